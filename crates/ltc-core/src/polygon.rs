@@ -1,0 +1,291 @@
+//! Polygonal lights: the fraction of a lobe that sees the polygon, in closed form.
+
+use crate::{InputError, Ltc, Matrix, Real, Vector};
+
+/// Which sides of a flat light emit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sides {
+    /// Only the side from which the vertices run counter-clockwise.
+    One,
+    /// Both.
+    Two,
+}
+
+/// A flat polygonal light, its vertices given relative to the shading point in the shading frame.
+///
+/// Any simple polygon of three or more vertices, convex or not. Vertices run counter-clockwise seen from the emitting
+/// side. It emits the same radiance in all directions.
+#[derive(Clone, Copy, Debug)]
+pub struct Polygon<'a, R: Real> {
+    vertices: &'a [R::Vec3],
+    sides: Sides,
+}
+
+impl<'a, R: Real> Polygon<'a, R> {
+    /// # Errors
+    /// [`InputError::TooFewVertices`] below three, [`InputError::NotFinite`] for a NaN or infinite coordinate.
+    pub fn new(vertices: &'a [R::Vec3], sides: Sides) -> Result<Self, InputError> {
+        if vertices.len() < 3 {
+            return Err(InputError::TooFewVertices { count: vertices.len() });
+        }
+        if !vertices.iter().all(|v| v.is_finite()) {
+            return Err(InputError::NotFinite { name: "vertex" });
+        }
+        Ok(Self { vertices, sides })
+    }
+
+    /// The fraction of `ltc` that sees the light, in [0, 1]: `∫ D(ω) dω` over the light's directions.
+    ///
+    /// Exact (2016 paper, eq. 3 and 11) and free of leaks: what lies below the surface's horizon (z ≤ 0 in the shading
+    /// frame) is cut away before the vertices go to cosine space, what lies below the horizon there afterwards. Zero
+    /// for a degenerate light, for a shading point in the light's plane, and for one behind a one-sided light.
+    pub fn integrate(&self, ltc: &Ltc<R>) -> R {
+        let facing = self.facing();
+        let visible = match self.sides {
+            Sides::One => facing > R::ZERO,
+            Sides::Two => facing != R::ZERO,
+        };
+        if !visible {
+            return R::ZERO;
+        }
+        let orientation = if facing > R::ZERO { -R::ONE } else { R::ONE };
+        let mut sum = BoundarySum::new(ltc.cosine_from_target());
+        clip_to_surface::<R>(self.vertices, |v| sum.push(v));
+        fraction_from_boundary(orientation * sum.finish())
+    }
+
+    /// The fraction of a Lambertian lobe that sees the light, i.e. its form factor, in [0, 1].
+    pub fn irradiance(&self) -> R {
+        self.integrate(&Ltc::cosine())
+    }
+
+    /// Proportional to the distance of the shading point in front of the light's plane (negative: behind it).
+    ///
+    /// Newell's vector area, taken about the first vertex so that distant lights keep their digits.
+    fn facing(&self) -> R {
+        let scale = self.vertices.iter().fold(R::ZERO, |m, v| m.max(v.max_abs()));
+        if scale <= R::ZERO {
+            return R::ZERO;
+        }
+        let shrink = R::ONE / scale;
+        let first = self.vertices[0] * shrink;
+        let mut area = first - first;
+        for pair in self.vertices[1..].windows(2) {
+            area += (pair[0] * shrink - first).cross(pair[1] * shrink - first);
+        }
+        -area.dot(first)
+    }
+}
+
+/// Sutherland–Hodgman against z ≥ 0, one vertex out at a time.
+fn clip_to_surface<R: Real>(vertices: &[R::Vec3], mut emit: impl FnMut(R::Vec3)) {
+    let Some(&last) = vertices.last() else { return };
+    let mut p = last;
+    for &q in vertices {
+        let (p_in, q_in) = (p.z() >= R::ZERO, q.z() >= R::ZERO);
+        if p_in != q_in {
+            emit(horizon_point::<R>(p, q));
+        }
+        if q_in {
+            emit(q);
+        }
+        p = q;
+    }
+}
+
+/// Where the segment from `p` to `q`, whose ends lie on different sides of z = 0, crosses it.
+fn horizon_point<R: Real>(p: R::Vec3, q: R::Vec3) -> R::Vec3 {
+    let t = p.z() / (p.z() - q.z());
+    let x = p + (q - p) * t;
+    R::Vec3::new(x.x(), x.y(), R::ZERO)
+}
+
+/// Accumulates `∮ sin²θ dφ` in cosine space, where θ > π/2 counts as π/2, along the boundary of a polygon.
+///
+/// By Stokes' theorem this is `2 ∫ max(0, cos θ) dω` over the inside, less 2π when the nadir is inside, up to the sign
+/// of the winding. Edges are independent of each other, so nothing need be closed along the horizon.
+struct BoundarySum<R: Real> {
+    cosine_from_target: R::Mat3,
+    ends: Option<(R::Vec3, R::Vec3)>,
+    sum: R,
+}
+
+impl<R: Real> BoundarySum<R> {
+    fn new(cosine_from_target: R::Mat3) -> Self {
+        Self { cosine_from_target, ends: None, sum: R::ZERO }
+    }
+
+    fn push(&mut self, vertex: R::Vec3) {
+        // A vertex at the shading point has no direction: leaving it out is the limit of a corner that is cut off.
+        let Some(v) = self.cosine_from_target.apply(vertex).try_unit() else { return };
+        self.ends = Some(match self.ends {
+            None => (v, v),
+            Some((first, previous)) => {
+                self.sum += edge(previous, v);
+                (first, v)
+            }
+        });
+    }
+
+    fn finish(self) -> R {
+        self.ends.map_or(R::ZERO, |(first, last)| self.sum + edge(last, first))
+    }
+}
+
+/// `∫ sin²θ dφ` along the great circle from `a` to `b`, its part below the horizon dropped onto the horizon.
+fn edge<R: Real>(a: R::Vec3, b: R::Vec3) -> R {
+    match (a.z() >= R::ZERO, b.z() >= R::ZERO) {
+        (true, true) => edge_above::<R>(a, b),
+        (false, false) => azimuth::<R>(a, b),
+        (true, false) => {
+            let x = horizon_point::<R>(a, b);
+            edge_above::<R>(a, x) + azimuth::<R>(x, b)
+        }
+        (false, true) => {
+            let x = horizon_point::<R>(a, b);
+            azimuth::<R>(a, x) + edge_above::<R>(x, b)
+        }
+    }
+}
+
+/// `∫ sin²θ dφ = angle(a, b) · (a×b).z / |a×b|` (2016 paper, eq. 11, with the angle by atan2, which neither cancels for
+/// short edges nor for edges near π). Equal and antipodal ends, which span no plane, give 0.
+fn edge_above<R: Real>(a: R::Vec3, b: R::Vec3) -> R {
+    let normal = a.cross(b);
+    let sine = normal.length();
+    if sine <= R::TINY { R::ZERO } else { sine.atan2(a.dot(b)) * (normal.z() / sine) }
+}
+
+/// Azimuth from `a` to `b`, in (−π, π].
+fn azimuth<R: Real>(a: R::Vec3, b: R::Vec3) -> R {
+    (a.x() * b.y() - a.y() * b.x()).atan2(a.x() * b.x() + a.y() * b.y())
+}
+
+/// The integral over the inside, as a fraction, from the boundary sum of a polygon that winds positively.
+///
+/// A flat polygon with the nadir inside covers at most half of the cosine, so its sum over 2π is in [−1, −½]; without
+/// it, it is in [0, 1]. Which of both is never in doubt, however much either is rounded.
+fn fraction_from_boundary<R: Real>(sum: R) -> R {
+    let turns = sum / (R::of(2.0) * R::PI);
+    let wrapped = if turns < R::of(-0.25) { turns + R::ONE } else { turns };
+    wrapped.clamped(R::ZERO, R::ONE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{r2, random};
+    use glam::{DMat3, DVec3, Vec3};
+
+    fn fraction(vertices: &[DVec3], ltc: &Ltc<f64>) -> f64 {
+        Polygon::new(vertices, Sides::One).unwrap().integrate(ltc)
+    }
+
+    /// A square of half-width `h` at height `z`, centred above (x, y), emitting downwards.
+    fn ceiling(x: f64, y: f64, z: f64, h: f64) -> [DVec3; 4] {
+        [(-h, -h), (-h, h), (h, h), (h, -h)].map(|(a, b)| DVec3::new(x + a, y + b, z))
+    }
+
+    #[test]
+    fn form_factor_of_a_parallel_square_is_the_textbook_one() {
+        // Differential element below the corner of a parallel rectangle a × b at distance c.
+        let corner = |a: f64, b: f64| {
+            let (x, y) = ((1.0 + a * a).sqrt(), (1.0 + b * b).sqrt());
+            (a / x * (b / x).atan() + b / y * (a / y).atan()) / core::f64::consts::TAU
+        };
+        for h in [1e-3, 0.1, 1.0, 10.0, 1e3] {
+            let value = fraction(&ceiling(0.0, 0.0, 1.0, h), &Ltc::cosine());
+            assert!((value - 4.0 * corner(h, h)).abs() < 1e-14, "{h}: {value}");
+        }
+    }
+
+    #[test]
+    fn sides_and_winding() {
+        let mut light = ceiling(0.2, 0.1, 1.0, 0.5);
+        let front = fraction(&light, &Ltc::cosine());
+        assert!(front > 0.1);
+        light.reverse();
+        assert_eq!(fraction(&light, &Ltc::cosine()), 0.0);
+        let two = Polygon::<f64>::new(&light, Sides::Two).unwrap().irradiance();
+        assert!((two - front).abs() < 1e-15);
+    }
+
+    #[test]
+    fn matches_a_count_of_samples_above_both_horizons() {
+        let mut rng = random(7);
+        let n = 1 << 15;
+        for case in 0..60 {
+            let mut numbers = [0.0; 9];
+            numbers.fill_with(|| rng() * 2.0 - 1.0);
+            let Ok(ltc) = Ltc::<f64>::new(DMat3::from_row_array(numbers)) else { continue };
+            let centre = DVec3::new(rng() * 4.0 - 2.0, rng() * 4.0 - 2.0, rng() * 4.0 - 2.0);
+            let (u, v) = (DVec3::new(rng(), rng(), rng()) * 2.0 - 1.0, DVec3::new(rng(), rng(), rng()) * 2.0 - 1.0);
+            let quad = [centre - u - v, centre + u - v, centre + u + v, centre - u + v];
+            let inside = |w: DVec3| {
+                let normal = u.cross(v);
+                let t = normal.dot(centre) / normal.dot(w);
+                let p = w * t - centre;
+                let gram = [u.dot(u), u.dot(v), v.dot(v)];
+                let det = gram[0] * gram[2] - gram[1] * gram[1];
+                let a = (gram[2] * p.dot(u) - gram[1] * p.dot(v)) / det;
+                let b = (gram[0] * p.dot(v) - gram[1] * p.dot(u)) / det;
+                t > 0.0 && a.abs() < 1.0 && b.abs() < 1.0 && w.z > 0.0
+            };
+            let count = (0..n).filter(|i| inside(ltc.sample(r2(*i)))).count() as f64 / n as f64;
+            let exact = Polygon::new(&quad, Sides::Two).unwrap().integrate(&ltc);
+            assert!((exact - count).abs() < 6e-3, "case {case}: {exact} {count}");
+        }
+    }
+
+    #[test]
+    fn a_light_below_the_horizon_adds_exactly_nothing() {
+        let mut rng = random(3);
+        for _ in 0..2000 {
+            let mut numbers = [0.0; 9];
+            numbers.fill_with(|| rng() * 2.0 - 1.0);
+            let Ok(ltc) = Ltc::<f64>::new(DMat3::from_row_array(numbers)) else { continue };
+            let quad = [0; 4].map(|_| DVec3::new(rng() - 0.5, rng() - 0.5, -rng() - 1e-12));
+            assert_eq!(Polygon::new(&quad, Sides::Two).unwrap().integrate(&ltc), 0.0);
+        }
+    }
+
+    #[test]
+    fn a_light_around_the_nadir_of_cosine_space() {
+        // The lobe points down (its own horizon cuts the light), the light surrounds its nadir.
+        let down = Ltc::<f64>::new(DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0))).unwrap();
+        assert_eq!(fraction(&ceiling(0.0, 0.0, 1.0, 1.0), &down), 0.0);
+        let tilted = Ltc::<f64>::new(DMat3::from_rotation_x(2.0)).unwrap();
+        let vast = fraction(&ceiling(0.0, 0.0, 1.0, 1e7), &tilted);
+        // The part of the tilted cosine that is above the surface: (1 + cos 2)/2.
+        assert!((vast - (1.0 + 2.0_f64.cos()) / 2.0).abs() < 1e-6, "{vast}");
+    }
+
+    #[test]
+    fn degenerate_lights_are_dark() {
+        let ltc = Ltc::<f64>::cosine();
+        let p = DVec3::new(0.3, 0.2, 1.0);
+        for quad in [
+            [p; 4],
+            [DVec3::ZERO; 4],
+            [p, p * 2.0, p * 3.0, p * 4.0],
+            [DVec3::new(-1.0, 0.0, 0.5), DVec3::new(1.0, 0.0, 0.5), DVec3::new(1.0, 0.0, -0.5), DVec3::new(-1.0, 0.0, -0.5)],
+        ] {
+            assert_eq!(Polygon::new(&quad, Sides::Two).unwrap().integrate(&ltc), 0.0, "{quad:?}");
+        }
+        assert!(Polygon::<f64>::new(&[p, p], Sides::One).is_err());
+        assert!(Polygon::<f64>::new(&[p, p, DVec3::NAN], Sides::One).is_err());
+    }
+
+    #[test]
+    fn single_precision_keeps_up_at_extreme_scales() {
+        let light = ceiling(0.1, -0.2, 1.0, 0.5);
+        let exact = fraction(&light, &Ltc::cosine());
+        for scale in [1e-30_f32, 1e-6, 1.0, 1e6, 1e30] {
+            let scaled = light.map(|v| v.as_vec3() * scale);
+            let value = Polygon::<f32>::new(&scaled, Sides::One).unwrap().irradiance();
+            assert!((f64::from(value) - exact).abs() < 1e-6, "{scale}: {value} {exact}");
+        }
+        let far = [Vec3::new(1e37, 0.0, 1e37); 3];
+        assert_eq!(Polygon::<f32>::new(&far, Sides::Two).unwrap().irradiance(), 0.0);
+    }
+}

@@ -1,0 +1,1 @@
+//! Fits LTC tables to BRDFs.

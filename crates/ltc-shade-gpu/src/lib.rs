@@ -1,0 +1,1 @@
+//! LTC area lights on the GPU through wgpu.

@@ -1,0 +1,1 @@
+//! Versioned LTC tables: axes, channels, lookup, manifest, digest, codecs.

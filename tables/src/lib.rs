@@ -1,0 +1,1 @@
+//! The LTC tables that this workspace ships, embedded.
