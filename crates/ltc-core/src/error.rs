@@ -46,7 +46,10 @@ impl fmt::Display for InputError {
                 write!(f, "{name} is {value}, must be in [{min}, {max}]")
             }
             Self::SingularMatrix { determinant } => {
-                write!(f, "matrix m must have a determinant above 0, has {determinant:e} (largest entry scaled to 1)")
+                write!(
+                    f,
+                    "matrix m must have a determinant above 0, has {determinant:e} (largest entry scaled to 1)"
+                )
             }
             Self::TooFewVertices { count } => write!(f, "a polygon needs at least 3 vertices, has {count}"),
             Self::Degenerate { name } => write!(f, "{name} is zero or parallel to what it must differ from"),

@@ -23,7 +23,8 @@ impl<R: Real> Ggx<R> {
         if wh.z() <= R::ZERO {
             return R::ZERO;
         }
-        let stretched = (wh.x() / self.alpha_x).squared() + (wh.y() / self.alpha_y).squared() + wh.z().squared();
+        let stretched =
+            (wh.x() / self.alpha_x).squared() + (wh.y() / self.alpha_y).squared() + wh.z().squared();
         R::ONE / (R::PI * self.alpha_x * self.alpha_y * stretched.squared())
     }
 
@@ -169,7 +170,8 @@ mod tests {
             let wo = direction(theta, phi);
             let quadrature = integrate_hemisphere(|wi| ggx.eval_cos(wo, wi));
             let n = 1 << 16;
-            let sampled: f64 = (0..n).map(|i| ggx.sample_weight(wo, ggx.sample(wo, r2(i)))).sum::<f64>() / n as f64;
+            let sampled: f64 =
+                (0..n).map(|i| ggx.sample_weight(wo, ggx.sample(wo, r2(i)))).sum::<f64>() / n as f64;
             assert!((sampled - quadrature).abs() < 1e-3, "{ax} {ay} {theta}: {sampled} {quadrature}");
             assert!(quadrature < 1.0 + 1e-3);
         }
@@ -202,9 +204,16 @@ mod tests {
             for wo in [glam::Vec3::Z, glam::Vec3::X, glam::Vec3::NEG_Z, glam::Vec3::ZERO] {
                 for u in [[0.0, 0.0], [1.0, 0.5], [0.999_999_9, 0.25], [0.5, 1.0]] {
                     let wi = ggx.sample(wo, u);
-                    let values =
-                        [ggx.eval_cos(wo, wi), ggx.pdf(wo, wi), ggx.sample_weight(wo, wi), ggx.fresnel_weight(wo, wi)];
-                    assert!(wi.is_finite() && values.iter().all(|v| v.is_finite() && *v >= 0.0), "{wo} {u:?} {values:?}");
+                    let values = [
+                        ggx.eval_cos(wo, wi),
+                        ggx.pdf(wo, wi),
+                        ggx.sample_weight(wo, wi),
+                        ggx.fresnel_weight(wo, wi),
+                    ];
+                    assert!(
+                        wi.is_finite() && values.iter().all(|v| v.is_finite() && *v >= 0.0),
+                        "{wo} {u:?} {values:?}"
+                    );
                 }
             }
         }

@@ -50,7 +50,8 @@ impl<R: Real> Ltc<R> {
     /// The clamped cosine itself (M = identity): Lambert's diffuse lobe.
     pub fn cosine() -> Self {
         let (o, l) = (R::ZERO, R::ONE);
-        let identity = R::Mat3::from_columns(R::Vec3::new(l, o, o), R::Vec3::new(o, l, o), R::Vec3::new(o, o, l));
+        let identity =
+            R::Mat3::from_columns(R::Vec3::new(l, o, o), R::Vec3::new(o, l, o), R::Vec3::new(o, o, l));
         Self { target_from_cosine: identity, cosine_from_target: identity, determinant: l }
     }
 
@@ -143,7 +144,9 @@ mod tests {
         let m = lobes()[1].target_from_cosine();
         for scale in [1e-200, 1e-3, 1e200] {
             let ltc = Ltc::<f64>::new(m * scale).unwrap();
-            assert!((ltc.density(ltc.median()) / lobes()[1].density(lobes()[1].median()) - 1.0).abs() < 1e-12);
+            assert!(
+                (ltc.density(ltc.median()) / lobes()[1].density(lobes()[1].median()) - 1.0).abs() < 1e-12
+            );
             let product = ltc.cosine_from_target() * ltc.target_from_cosine();
             assert!(product.abs_diff_eq(DMat3::IDENTITY, 1e-12));
         }

@@ -69,7 +69,7 @@ impl<'a, R: Real> Polygon<'a, R> {
         }
         let shrink = R::ONE / scale;
         let first = self.vertices[0] * shrink;
-        let mut area = first - first;
+        let mut area = R::Vec3::new(R::ZERO, R::ZERO, R::ZERO);
         for pair in self.vertices[1..].windows(2) {
             area += (pair[0] * shrink - first).cross(pair[1] * shrink - first);
         }
@@ -219,7 +219,8 @@ mod tests {
             numbers.fill_with(|| rng() * 2.0 - 1.0);
             let Ok(ltc) = Ltc::<f64>::new(DMat3::from_row_array(numbers)) else { continue };
             let centre = DVec3::new(rng() * 4.0 - 2.0, rng() * 4.0 - 2.0, rng() * 4.0 - 2.0);
-            let (u, v) = (DVec3::new(rng(), rng(), rng()) * 2.0 - 1.0, DVec3::new(rng(), rng(), rng()) * 2.0 - 1.0);
+            let (u, v) =
+                (DVec3::new(rng(), rng(), rng()) * 2.0 - 1.0, DVec3::new(rng(), rng(), rng()) * 2.0 - 1.0);
             let quad = [centre - u - v, centre + u - v, centre + u + v, centre - u + v];
             let inside = |w: DVec3| {
                 let normal = u.cross(v);
@@ -268,7 +269,12 @@ mod tests {
             [p; 4],
             [DVec3::ZERO; 4],
             [p, p * 2.0, p * 3.0, p * 4.0],
-            [DVec3::new(-1.0, 0.0, 0.5), DVec3::new(1.0, 0.0, 0.5), DVec3::new(1.0, 0.0, -0.5), DVec3::new(-1.0, 0.0, -0.5)],
+            [
+                DVec3::new(-1.0, 0.0, 0.5),
+                DVec3::new(1.0, 0.0, 0.5),
+                DVec3::new(1.0, 0.0, -0.5),
+                DVec3::new(-1.0, 0.0, -0.5),
+            ],
         ] {
             assert_eq!(Polygon::new(&quad, Sides::Two).unwrap().integrate(&ltc), 0.0, "{quad:?}");
         }

@@ -1,1 +1,35 @@
-//! Versioned LTC tables: axes, channels, lookup, manifest, digest, codecs.
+//! Versioned tables of linearly transformed cosines: axes, channels, lookup, provenance, digests, codecs.
+//!
+//! A [`Table`] is what was fitted: for every node of its axes a matrix `M`, a magnitude and a Fresnel term, in `f64`. A
+//! [`TableVersion`] is a table that left the workshop: an immutable payload with a [`Manifest`] that says what it is, how
+//! it was made and how good it is, named by the SHA-256 [`digest`](mod@digest) of the payload. A [`Catalogue`] finds
+//! versions.
+
+mod axis;
+mod catalogue;
+mod channels;
+mod crop;
+pub mod digest;
+mod error;
+pub mod files;
+pub mod ktx2;
+pub mod lookup;
+mod manifest;
+pub mod npz;
+mod precision;
+mod query;
+mod table;
+#[cfg(test)]
+mod testing;
+mod version;
+
+pub use axis::{Axis, Mapping, Quantity};
+pub use catalogue::Catalogue;
+pub use channels::Channels;
+pub use error::TableError;
+pub use lookup::{Lobe, Lookup};
+pub use manifest::{BrdfInfo, ChannelInfo, DrawErrors, Errors, Floors, Manifest};
+pub use precision::Precision;
+pub use query::{Folded, Query};
+pub use table::{CellStats, Kind, Table};
+pub use version::{MANIFEST_FILE, PAYLOAD_FILE, TableVersion, check_name};

@@ -1,0 +1,85 @@
+//! The part of a table that a scene needs.
+
+use crate::{CellStats, Quantity, Table, TableError};
+
+impl Table {
+    /// The smallest table whose nodes still surround `[low, high]` of a quantity, its entries unchanged.
+    ///
+    /// Lookups inside the range give what the whole table gives (to rounding); outside it they go to its ends.
+    ///
+    /// # Errors
+    /// [`TableError::BadAxis`] when the table has no such axis, or the range is empty, not finite, or outside of it.
+    pub fn crop(&self, quantity: Quantity, low: f64, high: f64) -> Result<Self, TableError> {
+        let bad = |reason| TableError::BadAxis { quantity: quantity.name(), reason };
+        let position = self
+            .axes()
+            .iter()
+            .position(|a| a.quantity == quantity)
+            .ok_or_else(|| bad("is not in this table"))?;
+        let axis = &self.axes()[position];
+        let inside = |x: f64| x >= axis.domain[0] && x <= axis.domain[1];
+        if !(low <= high && inside(low) && inside(high)) {
+            return Err(bad("cannot be cropped to a range that is empty or outside its domain"));
+        }
+        let first = axis.locate(low).0;
+        let (cell, t) = axis.locate(high);
+        let last = if t > 0.0 { cell + 1 } else { cell }.max(first + 1);
+
+        let mut axes = self.axes().to_vec();
+        axes[position].domain = [axis.node(first), axis.node(last)];
+        axes[position].len = last - first + 1;
+        let inner: usize = self.axes()[position + 1..].iter().map(|a| a.len).product();
+        let keep = |index: usize| (first..=last).contains(&(index / inner % axis.len));
+        Self::new(
+            axes,
+            kept(self.m(), keep),
+            kept(self.magnitude(), keep),
+            kept(self.fresnel(), keep),
+            CellStats {
+                tv: kept(&self.cells().tv, keep),
+                leak: kept(&self.cells().leak, keep),
+                condition: kept(&self.cells().condition, keep),
+            },
+        )
+    }
+}
+
+fn kept<T: Copy>(values: &[T], keep: impl Fn(usize) -> bool) -> Vec<T> {
+    values.iter().enumerate().filter(|(i, _)| keep(*i)).map(|(_, v)| *v).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        Query,
+        testing::{anisotropic, isotropic},
+    };
+
+    #[test]
+    fn a_crop_answers_as_the_whole_does() {
+        let whole = anisotropic();
+        let part = whole.crop(Quantity::Alpha, 0.4, 0.9).unwrap().crop(Quantity::Theta, 0.0, 0.5).unwrap();
+        assert_eq!(part.shape(), [2, 3, 3, 3]);
+        let query = Query { theta: 0.3, phi: 2.2, alpha_x: 0.45, alpha_y: 0.85 };
+        let (a, b) = (whole.lookup(&query).unwrap(), part.lookup(&query).unwrap());
+        assert!((a.magnitude - b.magnitude).abs() < 1e-14);
+        for (x, y) in a.lobes[0].m.iter().zip(b.lobes[0].m) {
+            assert!((x - y).abs() < 1e-14);
+        }
+        let curved = isotropic().crop(Quantity::Alpha, 0.3, 0.6).unwrap();
+        let query = Query { theta: 0.3, phi: 0.0, alpha_x: 0.5, alpha_y: 0.5 };
+        let (a, b) = (isotropic().lookup(&query).unwrap(), curved.lookup(&query).unwrap());
+        assert!((a.magnitude - b.magnitude).abs() < 1e-14);
+    }
+
+    #[test]
+    fn impossible_crops_are_refused() {
+        let table = isotropic();
+        assert!(table.crop(Quantity::Phi, 0.0, 1.0).is_err());
+        assert!(table.crop(Quantity::Alpha, 0.6, 0.5).is_err());
+        assert!(table.crop(Quantity::Alpha, 0.5, 1.5).is_err());
+        assert!(table.crop(Quantity::Alpha, f64::NAN, 1.0).is_err());
+        assert_eq!(table.crop(Quantity::Alpha, 1.0, 1.0).unwrap().shape(), [4, 2]);
+    }
+}
