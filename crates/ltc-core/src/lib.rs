@@ -31,6 +31,7 @@ mod frame;
 mod fresnel;
 mod ggx;
 mod ltc;
+pub mod points;
 mod polygon;
 mod real;
 mod roughness;

@@ -1,0 +1,65 @@
+//! The queries that tables are judged by, and those that they are fitted to.
+
+use core::f64::consts::TAU;
+
+use ltc_core::points::SplitMix64;
+use ltc_table::Query;
+
+/// α < this counts as narrow in the statistics.
+pub const NARROW_ALPHA: f64 = 0.14;
+
+/// The standard draw, always off the grid: α half from U[0.01, 1], half from (U[0.1, 1])²; λ = α_y/α_x ~ U[0.05, 1], or 1
+/// in the isotropic draw; θ ~ U[0°, 86°]; φ ~ U[0, 2π).
+pub fn standard(count: usize, seed: u64, isotropic: bool) -> Vec<Query> {
+    let mut rng = SplitMix64::new(seed);
+    (0..count).map(|_| one(&mut rng, isotropic, 0.01, 0.05, 86.0)).collect()
+}
+
+/// Queries for fitting: the standard draw, reaching a little beyond it on all sides, with a few very narrow lobes.
+pub fn training(rng: &mut SplitMix64, count: usize, isotropic: bool) -> Vec<Query> {
+    (0..count)
+        .map(|_| {
+            let mut query = one(rng, isotropic, 0.006, 0.03, 89.0);
+            if rng.unit() < 0.05 {
+                let alpha = 1e-3 * 20.0_f64.powf(rng.unit());
+                (query.alpha_x, query.alpha_y) = (alpha, alpha * query.alpha_y / query.alpha_x);
+            }
+            query
+        })
+        .collect()
+}
+
+fn one(
+    rng: &mut SplitMix64,
+    isotropic: bool,
+    alpha_min: f64,
+    lambda_min: f64,
+    theta_max_degrees: f64,
+) -> Query {
+    let even = rng.unit() < 0.5;
+    let alpha = if even { rng.range(alpha_min, 1.0) } else { rng.range(alpha_min.sqrt(), 1.0).powi(2) };
+    let lambda = rng.range(lambda_min, 1.0);
+    let theta = rng.range(0.0, theta_max_degrees.to_radians());
+    let phi = rng.range(0.0, TAU);
+    let lambda = if isotropic { 1.0 } else { lambda };
+    Query { theta, phi, alpha_x: alpha, alpha_y: alpha * lambda }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_draw_covers_what_it_says() {
+        let queries = standard(20_000, 1, false);
+        let mean = |f: &dyn Fn(&Query) -> f64| queries.iter().map(f).sum::<f64>() / 20_000.0;
+        // E α = ½·0.505 + ½·E U² with U ~ U[0.1, 1]: (1 − 0.001)/(3·0.9).
+        assert!((mean(&|q| q.alpha_x) - 0.5 * (0.505 + 0.37)).abs() < 5e-3);
+        assert!((mean(&|q| q.alpha_y / q.alpha_x) - 0.525).abs() < 5e-3);
+        assert!((mean(&|q| q.theta.to_degrees()) - 43.0).abs() < 0.5);
+        assert!((mean(&|q| q.phi) - TAU / 2.0).abs() < 0.03);
+        assert!(queries.iter().all(|q| q.validate().is_ok() && q.alpha_x >= 0.01 && q.alpha_y <= q.alpha_x));
+        assert!(standard(10, 1, true).iter().all(|q| q.alpha_x == q.alpha_y));
+        assert_ne!(standard(1, 1, false), standard(1, 2, false));
+    }
+}

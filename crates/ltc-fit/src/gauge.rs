@@ -1,0 +1,136 @@
+//! The freedom that leaves a lobe as it is, fixed so that matrices can be interpolated (KT et al. 2022, §5).
+
+use glam::DMat3;
+use ltc_table::Axis;
+
+use crate::{Lattice, Pattern};
+
+/// `M R_z` with the rotation that brings it nearest to the identity's orientation: it maximises `tr(M R_z)`.
+///
+/// With `R_z(a) = [[cos a, −sin a], [sin a, cos a]]`, `tr(M R_z(a)) = (m00 + m11) cos a + (m01 − m10) sin a + m22`, so
+/// `a = atan2(m01 − m10, m00 + m11)`. Of the paper's flips only those that keep det M > 0 remain, and they are rotations.
+pub fn aligned(m: DMat3) -> DMat3 {
+    let (m00, m10, m01, m11) = (m.x_axis.x, m.x_axis.y, m.y_axis.x, m.y_axis.y);
+    let (sine, cosine) = (m01 - m10, m00 + m11);
+    if sine == 0.0 && cosine == 0.0 {
+        return m;
+    }
+    m * DMat3::from_rotation_z(sine.atan2(cosine))
+}
+
+/// `M R_z` with the rotation that brings it nearest to `target`: it minimises `‖M R_z − T‖`, i.e. maximises
+/// `tr(Tᵀ M R_z)`.
+pub fn aligned_to(m: DMat3, target: DMat3) -> DMat3 {
+    // tr(Tᵀ M R_z) has the form of tr(N R_z) with N = Tᵀ M.
+    let n = target.transpose() * m;
+    let (sine, cosine) = (n.y_axis.x - n.x_axis.y, n.x_axis.x + n.y_axis.y);
+    if sine == 0.0 && cosine == 0.0 {
+        return m;
+    }
+    m * DMat3::from_rotation_z(sine.atan2(cosine))
+}
+
+/// Turns every entry of a table towards its neighbours along all axes, a few times over: what is interpolated between
+/// entries is then as little distorted as the gauge allows.
+///
+/// The alignment of each entry with the identity ([`aligned`], the paper's) is where this starts; it leaves entries of
+/// strongly bent lobes turned against their neighbours. Entries whose symmetry fixes their gauge stay.
+pub fn smooth(axes: &[Axis], lattice: &Lattice, m: &mut [DMat3]) {
+    const SWEEPS: usize = 12;
+    for _ in 0..SWEEPS {
+        for (index, tie) in lattice.ties.iter().enumerate() {
+            if tie.owner != index || tie.pattern != Pattern::General {
+                continue;
+            }
+            let target = neighbours(axes, index).map(|n| m[n]).fold(DMat3::ZERO, |sum, n| sum + n);
+            m[index] = aligned_to(m[index], target);
+        }
+        lattice.follow(m);
+    }
+}
+
+/// The entries one step away along each axis.
+fn neighbours(axes: &[Axis], index: usize) -> impl Iterator<Item = usize> {
+    let mut stride = 1;
+    let mut found = Vec::with_capacity(2 * axes.len());
+    for axis in axes.iter().rev() {
+        let position = index / stride % axis.len;
+        if position > 0 {
+            found.push(index - stride);
+        }
+        if position + 1 < axis.len {
+            found.push(index + stride);
+        }
+        stride *= axis.len;
+    }
+    found.into_iter()
+}
+
+/// `M` scaled so that its last column has unit length (2022 paper, §7).
+pub fn scaled(m: DMat3) -> DMat3 {
+    let length = m.z_axis.length();
+    if length > 0.0 { m * (1.0 / length) } else { m }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ltc_core::{Ltc, Matrix, points::r2};
+
+    fn matrices() -> Vec<DMat3> {
+        let rows = [
+            [0.4, 0.05, -0.6, -0.02, 0.2, -0.2, 0.1, 0.1, 0.7],
+            [0.05, 0.01, -0.9, 0.03, 0.5, -0.1, 0.2, 0.0, 0.2],
+            [0.9, 0.1, 0.1, -0.1, 0.8, 0.2, 0.0, -0.1, 1.0],
+        ];
+        rows.iter()
+            .flat_map(|r| {
+                (0..5).map(|k| DMat3::from_row_array(*r) * DMat3::from_rotation_z(f64::from(k) * 1.3))
+            })
+            .collect()
+    }
+
+    #[test]
+    fn alignment_keeps_the_lobe_and_is_unique() {
+        for chunk in matrices().chunks(5) {
+            let first = aligned(chunk[0]);
+            for m in chunk {
+                assert!(aligned(*m).abs_diff_eq(first, 1e-12), "the rotation it came with is gone");
+                let (a, b) = (Ltc::<f64>::new(*m).unwrap(), Ltc::<f64>::new(aligned(*m)).unwrap());
+                for i in 0..20 {
+                    let w = a.sample(r2(i, [0.5, 0.5]));
+                    assert!((a.density(w) / b.density(w) - 1.0).abs() < 1e-9);
+                }
+            }
+        }
+    }
+
+    /// Eq. 12 of the paper, its expectation over cosine samples as an average.
+    fn misalignment(m: DMat3) -> f64 {
+        let ltc = Ltc::<f64>::new(m).unwrap();
+        let cosine = Ltc::<f64>::cosine();
+        (0..2000)
+            .map(|i| r2(i, [0.5, 0.5]))
+            .map(|u| (ltc.sample(u) - cosine.sample(u)).length_squared())
+            .sum()
+    }
+
+    #[test]
+    fn the_closed_form_agrees_with_the_papers_search() {
+        for m in matrices() {
+            let closed = misalignment(aligned(m));
+            let searched = (0..720)
+                .map(|k| {
+                    misalignment(m * DMat3::from_rotation_z(f64::from(k) * core::f64::consts::PI / 360.0))
+                })
+                .fold(f64::INFINITY, f64::min);
+            let worst = (0..72)
+                .map(|k| {
+                    misalignment(m * DMat3::from_rotation_z(f64::from(k) * core::f64::consts::PI / 36.0))
+                })
+                .fold(0.0, f64::max);
+            let excess = (closed - searched) / (worst - searched);
+            assert!(excess < 0.02, "{m}: eq. 12 is {excess} of its range above its minimum");
+        }
+    }
+}

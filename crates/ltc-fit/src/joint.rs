@@ -1,0 +1,269 @@
+//! The table as the unknown: all entries refined together, over queries between them.
+
+use glam::DMat3;
+use ltc_core::points::SplitMix64;
+use ltc_table::{
+    Axis, Folded, Query,
+    lookup::{Corner, corners},
+};
+use rayon::prelude::*;
+
+use crate::{
+    Brdf, DiskPoints, FitError, Lattice, Lobe, Observer, Progress, draw, tv::total_variation_gradient,
+};
+
+/// Settings of [`refine`].
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointSettings {
+    /// Steps of stochastic gradient descent; 0 leaves the entries as they were fitted alone.
+    pub steps: usize,
+    /// Random queries in each step.
+    pub queries: usize,
+    /// Samples of the lobe at each query.
+    pub samples: usize,
+    /// Length of the first steps, relative to each lobe's width; falls to zero along a cosine.
+    pub learning_rate: f64,
+    /// Seed of the queries.
+    pub seed: u64,
+}
+
+/// A query's place in the table and how its lookup depends on the entries.
+struct Place {
+    query: Folded,
+    corners: Vec<Corner>,
+}
+
+/// Minimises the mean total variation over random queries, `E TV(p, interpolated M)`, by Adam in the coordinates
+/// `M = M₀ (exp(diag Δ) + offdiag Δ)` of every entry that owns itself, `M₀` its start. Patterns and ties hold exactly at
+/// every step, and det M stays above 0.
+///
+/// Sums are taken in the order of the queries, so that the result does not depend on the number of threads.
+///
+/// # Errors
+/// [`FitError::Stopped`] when the observer says so.
+pub fn refine(
+    brdf: &dyn Brdf,
+    axes: &[Axis],
+    lattice: &Lattice,
+    start: &[DMat3],
+    settings: JointSettings,
+    observer: Observer<'_>,
+) -> Result<Vec<DMat3>, FitError> {
+    let mut unknowns = Unknowns::new(lattice, start);
+    let mut rng = SplitMix64::new(settings.seed);
+    let isotropic = axes.len() == 2;
+    let mut average = RunningMean::default();
+    for step in 0..settings.steps {
+        let queries = draw::training(&mut rng, settings.queries, isotropic);
+        let points = DiskPoints::new(settings.samples, [rng.unit(), rng.unit()]);
+        let m = unknowns.matrices();
+        let gradients: Result<Vec<_>, FitError> = queries
+            .par_iter()
+            .with_min_len(16)
+            .map_init(Lobe::default, |lobe, query| query_gradient(brdf, axes, &m, query, &points, lobe))
+            .collect();
+        let mut by_entry = vec![DMat3::ZERO; m.len()];
+        for (place, value, gradient) in gradients? {
+            average.add(value);
+            for corner in &place.corners {
+                by_entry[corner.index] += gradient * (corner.weight / settings.queries as f64);
+            }
+        }
+        guard(axes, &m, &mut rng, &mut by_entry, 1.0 / settings.queries as f64);
+        let progress = step as f64 / settings.steps as f64;
+        let rate = settings.learning_rate * 0.5 * (1.0 + (core::f64::consts::PI * progress).cos());
+        unknowns.step(&by_entry, rate);
+        let report = Progress {
+            stage: "joint refinement",
+            done: step + 1,
+            total: settings.steps,
+            tv: Some(average.value()),
+        };
+        if !observer(report) {
+            return Err(FitError::Stopped);
+        }
+    }
+    Ok(unknowns.matrices())
+}
+
+fn query_gradient(
+    brdf: &dyn Brdf,
+    axes: &[Axis],
+    m: &[DMat3],
+    query: &Query,
+    points: &DiskPoints,
+    lobe: &mut Lobe,
+) -> Result<(Place, f64, DMat3), FitError> {
+    let place = locate(axes, query)?;
+    let interpolated = interpolate(m, &place.corners);
+    let folded = &place.query;
+    let alpha = ltc_core::Alpha::new(folded.alpha, folded.alpha * folded.lambda)?;
+    brdf.sample_lobe(crate::direction(folded.theta, folded.phi), alpha, points, lobe);
+    let (value, gradient) = total_variation_gradient(lobe, interpolated);
+    let gradient = if gradient.is_finite() { gradient } else { DMat3::ZERO };
+    let gradient = gradient + barrier_gradient(interpolated);
+    Ok((place, value, gradient))
+}
+
+/// Smallest `det M / (|c₀||c₁||c₂|)` that interpolation may come to without being pushed back.
+const MIN_VOLUME: f64 = 0.05;
+/// How hard it is pushed.
+const BARRIER: f64 = 20.0;
+
+/// Derivative by `M` of `BARRIER · max(0, MIN_VOLUME − v)²`, with `v` the volume that the columns' directions span: keeps
+/// det M > 0 between the entries. The columns' lengths count as constants.
+fn barrier_gradient(m: DMat3) -> DMat3 {
+    let scale = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
+    let lack = MIN_VOLUME - m.determinant() / scale.max(f64::MIN_POSITIVE);
+    if !(lack > 0.0 && scale > 0.0) {
+        return DMat3::ZERO;
+    }
+    let cofactors =
+        DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+    cofactors * (-2.0 * BARRIER * lack / scale)
+}
+
+fn interpolate(m: &[DMat3], corners: &[Corner]) -> DMat3 {
+    corners.iter().fold(DMat3::ZERO, |sum, corner| sum + m[corner.index] * corner.weight)
+}
+
+/// Points spread over the whole grid at which one step guards det M; queries of the draw seldom come by its corners.
+const GUARDS: usize = 4096;
+
+/// Adds the barrier's gradient at random points of the grid, even in node numbers.
+fn guard(axes: &[Axis], m: &[DMat3], rng: &mut SplitMix64, by_entry: &mut [DMat3], weight: f64) {
+    for _ in 0..GUARDS {
+        let mut value = |k: usize| {
+            let axis: &Axis = &axes[k];
+            let [low, high] = axis.domain.map(|x| axis.mapping.coordinate(x));
+            axis.mapping.value(rng.range(low, high))
+        };
+        let corners: Vec<Corner> = if axes.len() == 2 {
+            corners(axes, [value(0), value(1)]).collect()
+        } else {
+            corners(axes, [value(0), value(1), value(2), value(3)]).collect()
+        };
+        let push = barrier_gradient(interpolate(m, &corners));
+        if push != DMat3::ZERO {
+            for corner in corners {
+                by_entry[corner.index] += push * (corner.weight * weight);
+            }
+        }
+    }
+}
+
+fn locate(axes: &[Axis], query: &Query) -> Result<Place, FitError> {
+    let mut folded = query.fold()?;
+    let corners = if axes.len() == 2 {
+        // An isotropic table holds the lobe of φ = 0 and turns it.
+        folded.phi = 0.0;
+        corners(axes, [folded.theta, folded.alpha]).collect()
+    } else {
+        corners(axes, [folded.theta, folded.phi, folded.alpha, folded.lambda]).collect()
+    };
+    Ok(Place { query: folded, corners })
+}
+
+/// The owners' `Δ` and what Adam remembers of them.
+struct Unknowns<'a> {
+    lattice: &'a Lattice,
+    owners: Vec<usize>,
+    start: &'a [DMat3],
+    delta: Vec<[f64; 9]>,
+    mean: Vec<[f64; 9]>,
+    square: Vec<[f64; 9]>,
+    steps: i32,
+}
+
+impl<'a> Unknowns<'a> {
+    fn new(lattice: &'a Lattice, start: &'a [DMat3]) -> Self {
+        let owners = lattice.owners();
+        let zero = vec![[0.0; 9]; owners.len()];
+        Self { lattice, owners, start, delta: zero.clone(), mean: zero.clone(), square: zero, steps: 0 }
+    }
+
+    fn matrices(&self) -> Vec<DMat3> {
+        let mut m = vec![DMat3::IDENTITY; self.start.len()];
+        for (delta, &index) in self.delta.iter().zip(&self.owners) {
+            m[index] = self.start[index] * factor(delta);
+        }
+        self.lattice.follow(&mut m);
+        m
+    }
+
+    /// Adam (Kingma & Ba 2015) on the owners, each gathering the gradients of those that follow it.
+    fn step(&mut self, by_entry: &[DMat3], rate: f64) {
+        const DECAY_MEAN: f64 = 0.9;
+        const DECAY_SQUARE: f64 = 0.999;
+        let mut gathered = vec![DMat3::ZERO; by_entry.len()];
+        for (tie, gradient) in self.lattice.ties.iter().zip(by_entry) {
+            gathered[tie.owner] += tie.pull_back(*gradient);
+        }
+        self.steps += 1;
+        let (correct_mean, correct_square) =
+            (1.0 - DECAY_MEAN.powi(self.steps), 1.0 - DECAY_SQUARE.powi(self.steps));
+        for (k, &index) in self.owners.iter().enumerate() {
+            let by_delta = self.start[index].transpose() * gathered[index];
+            let gradient = self.lattice.ties[index].pattern.project(by_delta).to_cols_array();
+            for (i, g) in gradient.into_iter().enumerate() {
+                let g = if on_diagonal(i) { g * self.delta[k][i].exp() } else { g };
+                let (mean, square) = (&mut self.mean[k][i], &mut self.square[k][i]);
+                *mean = DECAY_MEAN * *mean + (1.0 - DECAY_MEAN) * g;
+                *square = DECAY_SQUARE * *square + (1.0 - DECAY_SQUARE) * g * g;
+                self.delta[k][i] -=
+                    rate * (*mean / correct_mean) / ((*square / correct_square).sqrt() + 1e-8);
+            }
+            keep_regular(&mut self.delta[k]);
+        }
+    }
+}
+
+/// Whether entry `i` of a column-major 3×3 matrix lies on its diagonal.
+fn on_diagonal(i: usize) -> bool {
+    i % 4 == 0
+}
+
+/// `exp(diag Δ) + offdiag Δ`: scales stay positive however far they are pushed.
+fn factor(delta: &[f64; 9]) -> DMat3 {
+    DMat3::from_cols_array(&core::array::from_fn(|i| if on_diagonal(i) { delta[i].exp() } else { delta[i] }))
+}
+
+/// Farthest that a logarithmic scale may go from its start.
+const MAX_LOG_SCALE: f64 = 3.0;
+/// Smallest determinant of [`factor`], relative to the product of its diagonal.
+const MIN_DETERMINANT: f64 = 0.1;
+
+/// Brings `Δ` back to where [`factor`] has a determinant well above 0.
+fn keep_regular(delta: &mut [f64; 9]) {
+    for i in [0, 4, 8] {
+        delta[i] = delta[i].clamp(-MAX_LOG_SCALE, MAX_LOG_SCALE);
+    }
+    let product = (delta[0] + delta[4] + delta[8]).exp();
+    while factor(delta).determinant() < MIN_DETERMINANT * product {
+        for (i, d) in delta.iter_mut().enumerate() {
+            if !on_diagonal(i) {
+                *d *= 0.9;
+            }
+        }
+    }
+}
+
+/// An exponential mean of the last few thousand values.
+#[derive(Default)]
+struct RunningMean {
+    value: f64,
+    weight: f64,
+}
+
+impl RunningMean {
+    fn add(&mut self, value: f64) {
+        const KEEP: f64 = 1.0 - 1.0 / 20_000.0;
+        self.value = KEEP * self.value + (1.0 - KEEP) * value;
+        self.weight = KEEP * self.weight + (1.0 - KEEP);
+    }
+
+    fn value(&self) -> f64 {
+        self.value / self.weight.max(f64::MIN_POSITIVE)
+    }
+}

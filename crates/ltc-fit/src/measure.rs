@@ -1,0 +1,212 @@
+//! How good a table is.
+
+use glam::DMat3;
+use ltc_core::Matrix;
+use ltc_table::{CellStats, DrawErrors, Errors, Floors, Kind, Lookup, Query, Table};
+use rayon::prelude::*;
+
+use crate::{Brdf, DiskPoints, FitError, Lattice, Lobe, draw, total_variation};
+
+/// How [`measure`] samples.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeasureSettings {
+    /// Queries of the standard draw.
+    pub queries: usize,
+    /// Samples of the lobe at each query and at each entry.
+    pub samples: usize,
+    /// Seed of the queries; the fit must not use it.
+    pub seed: u64,
+}
+
+/// Where the samples of a measurement start; fits start elsewhere or at random.
+const MEASURE_SHIFT: [f64; 2] = [0.37, 0.71];
+
+/// Statistics of every entry, at its own node.
+///
+/// # Errors
+/// None for a valid table.
+pub fn cells(brdf: &dyn Brdf, table: &Table, floors: &Floors, samples: usize) -> Result<CellStats, FitError> {
+    let lattice = Lattice::new(table.axes(), floors);
+    let points = DiskPoints::new(samples, MEASURE_SHIFT);
+    let tv: Result<Vec<f64>, FitError> = lattice
+        .nodes
+        .par_iter()
+        .zip(table.m())
+        .map_init(Lobe::default, |lobe, (node, m)| {
+            brdf.sample_lobe(node.wo(), node.widths()?, &points, lobe);
+            Ok(total_variation(lobe, *m))
+        })
+        .collect();
+    Ok(CellStats {
+        tv: tv?,
+        leak: table.m().iter().map(|m| leak(*m)).collect(),
+        condition: table.m().iter().map(|m| condition(*m)).collect(),
+    })
+}
+
+/// Errors over the standard draw, and the summary of `cells`.
+///
+/// # Errors
+/// None for a valid table.
+pub fn errors(
+    brdf: &dyn Brdf,
+    table: &Table,
+    cells: &CellStats,
+    settings: MeasureSettings,
+) -> Result<Errors, FitError> {
+    let isotropic = table.kind() == Kind::Isotropic;
+    let queries = draw::standard(settings.queries, settings.seed, isotropic);
+    let points = DiskPoints::new(settings.samples, MEASURE_SHIFT);
+    let results: Result<Vec<QueryError>, FitError> = queries
+        .par_iter()
+        .map_init(Lobe::default, |lobe, query| query_error(brdf, table, query, &points, lobe))
+        .collect();
+    let results = results?;
+    let tv: Vec<f64> = results.iter().map(|r| r.tv).collect();
+    let magnitude: Vec<f64> = results.iter().map(|r| r.magnitude).collect();
+    let fresnel: Vec<f64> = results.iter().map(|r| r.fresnel).collect();
+    Ok(Errors {
+        standard_draw: draw_errors(&queries, &tv, settings, isotropic),
+        leak_max: maximum(&cells.leak),
+        leak_mean: mean(&cells.leak),
+        condition_max: maximum(&cells.condition),
+        cell_tv_mean: mean(&cells.tv),
+        cell_tv_max: maximum(&cells.tv),
+        magnitude_mean: mean(&magnitude),
+        magnitude_max: maximum(&magnitude),
+        fresnel_mean: mean(&fresnel),
+        fresnel_max: maximum(&fresnel),
+    })
+}
+
+struct QueryError {
+    tv: f64,
+    magnitude: f64,
+    fresnel: f64,
+}
+
+fn query_error(
+    brdf: &dyn Brdf,
+    table: &Table,
+    query: &Query,
+    points: &DiskPoints,
+    lobe: &mut Lobe,
+) -> Result<QueryError, FitError> {
+    brdf.sample_lobe(crate::direction(query.theta, query.phi), query.validate()?, points, lobe);
+    let Lookup { lobes, magnitude, fresnel } = table.lookup(query)?;
+    Ok(QueryError {
+        tv: total_variation(lobe, DMat3::from_row_array(lobes[0].m)),
+        magnitude: (magnitude - lobe.magnitude).abs(),
+        fresnel: (fresnel - lobe.fresnel).abs(),
+    })
+}
+
+fn draw_errors(queries: &[Query], tv: &[f64], settings: MeasureSettings, isotropic: bool) -> DrawErrors {
+    let mut sorted = tv.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let among = |narrow: bool| {
+        let chosen: Vec<f64> = queries
+            .iter()
+            .zip(tv)
+            .filter(|(q, _)| (q.alpha_x.max(q.alpha_y) < draw::NARROW_ALPHA) == narrow)
+            .map(|(_, tv)| *tv)
+            .collect();
+        mean(&chosen)
+    };
+    DrawErrors {
+        draw: if isotropic { "isotropic" } else { "anisotropic" }.to_owned(),
+        tv_mean: mean(tv),
+        tv_median: quantile(&sorted, 0.5),
+        tv_p95: quantile(&sorted, 0.95),
+        tv_max: maximum(tv),
+        tv_mean_alpha_below_0_14: among(true),
+        tv_mean_alpha_from_0_14: among(false),
+        queries: settings.queries as u32,
+        samples: settings.samples as u32,
+        seed: settings.seed,
+    }
+}
+
+/// Share of an LTC's mass below the surface's horizon: `(1 − cos γ)/2`, γ the angle between the third row of `M` (the
+/// surface's normal as cosine space sees it) and z.
+pub fn leak(m: DMat3) -> f64 {
+    let row = m.row(2);
+    let length = row.length();
+    // The difference as a product, which keeps its digits when the leak is small.
+    let sideways = row.x * row.x + row.y * row.y;
+    if length <= 0.0 {
+        1.0
+    } else if row.z > 0.0 {
+        0.5 * sideways / (length * (length + row.z))
+    } else {
+        0.5 * (1.0 - row.z / length)
+    }
+}
+
+/// Condition number in the 2-norm: the ratio of the extreme singular values, by one-sided Jacobi rotations.
+pub fn condition(m: DMat3) -> f64 {
+    let mut c = [m.x_axis, m.y_axis, m.z_axis];
+    for _ in 0..12 {
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            let (a, b, g) = (c[i].length_squared(), c[j].length_squared(), c[i].dot(c[j]));
+            if g == 0.0 {
+                continue;
+            }
+            let zeta = (b - a) / (2.0 * g);
+            let t = zeta.signum() / (zeta.abs() + (1.0 + zeta * zeta).sqrt());
+            let cos = 1.0 / (1.0 + t * t).sqrt();
+            let sin = cos * t;
+            (c[i], c[j]) = (c[i] * cos - c[j] * sin, c[i] * sin + c[j] * cos);
+        }
+    }
+    let lengths = c.map(glam::DVec3::length);
+    let largest = lengths.into_iter().fold(0.0, f64::max);
+    let smallest = lengths.into_iter().fold(f64::INFINITY, f64::min);
+    largest / smallest.max(f64::MIN_POSITIVE)
+}
+
+fn mean(values: &[f64]) -> f64 {
+    if values.is_empty() { 0.0 } else { values.iter().sum::<f64>() / values.len() as f64 }
+}
+
+fn maximum(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
+}
+
+fn quantile(sorted: &[f64], q: f64) -> f64 {
+    let index = (q * sorted.len().saturating_sub(1) as f64).round() as usize;
+    sorted.get(index).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ltc_core::{Ltc, points::r2};
+
+    fn matrix() -> DMat3 {
+        DMat3::from_row_array([0.4, 0.05, -0.9, 0.1, 0.2, -0.2, 0.3, 0.1, 0.3])
+    }
+
+    #[test]
+    fn leak_is_the_share_of_samples_below() {
+        let ltc = Ltc::<f64>::new(matrix()).unwrap();
+        let n = 1 << 16;
+        let below =
+            (0..n).filter(|i| ltc.sample(r2(*i, [0.5, 0.5])).z < 0.0).count() as f64 / f64::from(1 << 16);
+        assert!((leak(matrix()) - below).abs() < 1e-3, "{} {below}", leak(matrix()));
+        assert!(below > 0.01);
+        assert_eq!(leak(DMat3::IDENTITY), 0.0);
+    }
+
+    #[test]
+    fn condition_of_known_singular_values() {
+        let (u, v) =
+            (DMat3::from_rotation_x(0.7), DMat3::from_rotation_y(-1.1) * DMat3::from_rotation_z(0.3));
+        for small in [1.0, 1e-3, 1e-8] {
+            let m = u * DMat3::from_diagonal(glam::DVec3::new(0.5, small, 1.0)) * v;
+            let expected = 1.0 / f64::min(small, 0.5);
+            assert!((condition(m) / expected - 1.0).abs() < 1e-6, "{} {expected}", condition(m));
+        }
+    }
+}
