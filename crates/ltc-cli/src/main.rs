@@ -1,2 +1,66 @@
-//! The command line tool.
-fn main() {}
+//! The command line tool `ltc`: fits, keeps, serves and uses tables of linearly transformed cosines.
+
+mod commands;
+mod json_lines;
+mod progress;
+mod tables;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::tables::Tables;
+
+/// Area lights with real materials: fit, keep, serve and use tables of linearly transformed cosines.
+#[derive(Parser)]
+#[command(name = "ltc", version, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    #[command(flatten)]
+    tables: Tables,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Serve(commands::serve::Serve),
+    Fit(commands::fit::Fit),
+    Tables(commands::tables::List),
+    Inspect(commands::tables::Inspect),
+    Verify(commands::verify::Verify),
+    Lookup(commands::lookup::Lookup),
+    Integrate(commands::integrate::Integrate),
+    Export(commands::export::Export),
+    Render(commands::render::Render),
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let tables = &cli.tables;
+    let result = match cli.command {
+        Command::Serve(command) => command.run(tables),
+        Command::Fit(command) => command.run(),
+        Command::Tables(command) => command.run(tables),
+        Command::Inspect(command) => command.run(tables),
+        Command::Verify(command) => command.run(tables),
+        Command::Lookup(command) => command.run(tables),
+        Command::Integrate(command) => command.run(tables),
+        Command::Export(command) => command.run(tables),
+        Command::Render(command) => command.run(tables),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            // One line, whatever the cause: names from outside may hold line breaks.
+            eprintln!("error: {}", format!("{error:#}").replace(['\n', '\r'], " "));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Whoever read our output has had enough, as `head` does.
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    let io = error.downcast_ref::<std::io::Error>();
+    io.is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
+}

@@ -50,6 +50,6 @@ pub fn fit_entries(
         m[*index] = fitted;
     }
     lattice.follow(&mut m);
-    if std::env::var_os("NOSMOOTH").is_none() { gauge::smooth(axes, lattice, &mut m);}
+    gauge::smooth(axes, lattice, &mut m);
     Ok(m)
 }

@@ -37,7 +37,8 @@ pub fn refine_entry(lobe: &Lobe, start: DMat3, pattern: Pattern, max_iterations:
         },
         max_iterations,
     );
-    let m = pattern.project(gauge::scaled(gauge::aligned(coordinates.matrix(&point))));
+    let m =
+        gauge::signed(pattern.project(gauge::scaled(gauge::aligned(coordinates.matrix(&point)))), pattern);
     EntryFit { m, tv: value, iterations, stop }
 }
 

@@ -37,12 +37,18 @@ pub fn aligned_to(m: DMat3, target: DMat3) -> DMat3 {
 /// strongly bent lobes turned against their neighbours. Entries whose symmetry fixes their gauge stay.
 pub fn smooth(axes: &[Axis], lattice: &Lattice, m: &mut [DMat3]) {
     const SWEEPS: usize = 12;
-    for _ in 0..SWEEPS {
+    let phi_stride: usize = axes.iter().skip(2).map(|a| a.len).product();
+    for sweep in 0..SWEEPS {
         for (index, tie) in lattice.ties.iter().enumerate() {
             if tie.owner != index || tie.pattern != Pattern::General {
                 continue;
             }
-            let target = neighbours(axes, index).map(|n| m[n]).fold(DMat3::ZERO, |sum, n| sum + n);
+            // First from φ = 0, where the symmetry fixes the gauge, onwards; then each among all of its neighbours.
+            let target = if sweep == 0 {
+                m[index - phi_stride]
+            } else {
+                neighbours(axes, index).fold(DMat3::ZERO, |sum, n| sum + m[n])
+            };
             m[index] = aligned_to(m[index], target);
         }
         lattice.follow(m);
@@ -64,6 +70,17 @@ fn neighbours(axes: &[Axis], index: usize) -> impl Iterator<Item = usize> {
         stride *= axis.len;
     }
     found.into_iter()
+}
+
+/// `M` or `M R_z(π)`, whichever has the entry across the plane of symmetry above 0: the symmetry leaves no other choice,
+/// and neighbours that chose differently would interpolate to a singular matrix.
+pub fn signed(m: DMat3, pattern: Pattern) -> DMat3 {
+    let across = match pattern {
+        Pattern::General => return m,
+        Pattern::MirrorY => m.y_axis.y,
+        Pattern::MirrorX | Pattern::Diagonal | Pattern::Round => m.x_axis.x,
+    };
+    if across < 0.0 { DMat3::from_cols(-m.x_axis, -m.y_axis, m.z_axis) } else { m }
 }
 
 /// `M` scaled so that its last column has unit length (2022 paper, §7).

@@ -9,7 +9,8 @@ use ltc_table::{
 use rayon::prelude::*;
 
 use crate::{
-    Brdf, DiskPoints, FitError, Lattice, Lobe, Observer, Progress, draw, tv::total_variation_gradient,
+    Brdf, DiskPoints, FitError, Lattice, Lobe, Observer, Progress, draw, regular,
+    tv::total_variation_gradient,
 };
 
 /// Settings of [`refine`].
@@ -70,7 +71,7 @@ pub fn refine(
                 by_entry[corner.index] += gradient * (corner.weight / settings.queries as f64);
             }
         }
-        guard(axes, &m, &mut rng, &mut by_entry, 1.0 / settings.queries as f64);
+        regular::push_apart(axes, &m, rng.bits(), 1.0 / settings.queries as f64, &mut by_entry);
         let progress = step as f64 / settings.steps as f64;
         let rate = settings.learning_rate * 0.5 * (1.0 + (core::f64::consts::PI * progress).cos());
         unknowns.step(&by_entry, rate);
@@ -102,55 +103,11 @@ fn query_gradient(
     brdf.sample_lobe(crate::direction(folded.theta, folded.phi), alpha, points, lobe);
     let (value, gradient) = total_variation_gradient(lobe, interpolated);
     let gradient = if gradient.is_finite() { gradient } else { DMat3::ZERO };
-    let gradient = gradient + barrier_gradient(interpolated);
     Ok((place, value, gradient))
 }
 
-/// Smallest `det M / (|c₀||c₁||c₂|)` that interpolation may come to without being pushed back.
-const MIN_VOLUME: f64 = 0.05;
-/// How hard it is pushed.
-const BARRIER: f64 = 20.0;
-
-/// Derivative by `M` of `BARRIER · max(0, MIN_VOLUME − v)²`, with `v` the volume that the columns' directions span: keeps
-/// det M > 0 between the entries. The columns' lengths count as constants.
-fn barrier_gradient(m: DMat3) -> DMat3 {
-    let scale = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
-    let lack = MIN_VOLUME - m.determinant() / scale.max(f64::MIN_POSITIVE);
-    if !(lack > 0.0 && scale > 0.0) {
-        return DMat3::ZERO;
-    }
-    let cofactors =
-        DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
-    cofactors * (-2.0 * BARRIER * lack / scale)
-}
-
-fn interpolate(m: &[DMat3], corners: &[Corner]) -> DMat3 {
+pub(crate) fn interpolate(m: &[DMat3], corners: &[Corner]) -> DMat3 {
     corners.iter().fold(DMat3::ZERO, |sum, corner| sum + m[corner.index] * corner.weight)
-}
-
-/// Points spread over the whole grid at which one step guards det M; queries of the draw seldom come by its corners.
-const GUARDS: usize = 4096;
-
-/// Adds the barrier's gradient at random points of the grid, even in node numbers.
-fn guard(axes: &[Axis], m: &[DMat3], rng: &mut SplitMix64, by_entry: &mut [DMat3], weight: f64) {
-    for _ in 0..GUARDS {
-        let mut value = |k: usize| {
-            let axis: &Axis = &axes[k];
-            let [low, high] = axis.domain.map(|x| axis.mapping.coordinate(x));
-            axis.mapping.value(rng.range(low, high))
-        };
-        let corners: Vec<Corner> = if axes.len() == 2 {
-            corners(axes, [value(0), value(1)]).collect()
-        } else {
-            corners(axes, [value(0), value(1), value(2), value(3)]).collect()
-        };
-        let push = barrier_gradient(interpolate(m, &corners));
-        if push != DMat3::ZERO {
-            for corner in corners {
-                by_entry[corner.index] += push * (corner.weight * weight);
-            }
-        }
-    }
 }
 
 fn locate(axes: &[Axis], query: &Query) -> Result<Place, FitError> {

@@ -19,6 +19,7 @@ mod lobe;
 pub mod measure;
 mod points;
 mod progress;
+mod regular;
 mod spec;
 mod start;
 mod symmetry;

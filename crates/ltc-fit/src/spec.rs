@@ -51,7 +51,7 @@ impl FitSpec {
             ),
             "ggx-anisotropic" => (
                 [Theta, Phi, Alpha, Lambda].map(|q| Axis::full(q, Mapping::Linear, 8)).to_vec(),
-                JointSettings { steps: 1500, queries: 2048, samples: 256, learning_rate: 3e-3, seed: 3 },
+                JointSettings { steps: 1500, queries: 2048, samples: 256, learning_rate: 6e-3, seed: 3 },
             ),
             _ => {
                 let known = Self::PRESETS.join(", ");

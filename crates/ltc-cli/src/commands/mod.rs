@@ -1,0 +1,10 @@
+//! One file for each verb.
+
+pub mod export;
+pub mod fit;
+pub mod integrate;
+pub mod lookup;
+pub mod render;
+pub mod serve;
+pub mod tables;
+pub mod verify;

@@ -1,0 +1,72 @@
+//! LTC shading on the GPU.
+
+use glam::{DVec3, Vec3};
+use ltc_shade_gpu::{Gpu, GpuOptions, RectLight, Shader, TableTextures, Tables};
+
+use crate::gbuffer::SurfacePoint;
+use crate::light::Emitter;
+use crate::shader::Shade;
+use crate::{RenderError, RenderTables};
+
+/// The GPU back end: a device with the tables on it.
+pub(crate) struct GpuBackend {
+    gpu: Gpu,
+    shader: Shader,
+    isotropic: TableTextures,
+    anisotropic: TableTextures,
+    lights: Vec<RectLight>,
+}
+
+impl GpuBackend {
+    pub fn open(tables: &RenderTables<'_>, lights: &[Emitter]) -> Result<Self, RenderError> {
+        let gpu = Gpu::new(GpuOptions::default())?;
+        Ok(Self {
+            shader: Shader::new(&gpu)?,
+            isotropic: TableTextures::upload(&gpu, tables.isotropic)?,
+            anisotropic: TableTextures::upload(&gpu, tables.anisotropic)?,
+            lights: lights.iter().map(light).collect(),
+            gpu,
+        })
+    }
+}
+
+impl Shade for GpuBackend {
+    fn device(&self) -> String {
+        self.gpu.info().to_string()
+    }
+
+    fn batch(&self) -> usize {
+        1 << 17
+    }
+
+    fn shade(&self, points: &[SurfacePoint]) -> Result<Vec<DVec3>, RenderError> {
+        let tables = Tables { isotropic: Some(&self.isotropic), anisotropic: Some(&self.anisotropic) };
+        let points: Vec<_> = points.iter().map(surface_point).collect();
+        let radiance = self.shader.shade(&self.gpu, tables, &points, &self.lights)?;
+        Ok(radiance.into_iter().map(|r| Vec3::from_array(r).as_dvec3()).collect())
+    }
+}
+
+fn light(emitter: &Emitter) -> RectLight {
+    RectLight {
+        corners: emitter.corners.map(DVec3::as_vec3),
+        radiance: emitter.radiance.as_vec3(),
+        two_sided: emitter.two_sided,
+    }
+}
+
+fn surface_point(point: &SurfacePoint) -> ltc_shade_gpu::SurfacePoint {
+    let material = &point.material;
+    ltc_shade_gpu::SurfacePoint {
+        position: point.position.as_vec3(),
+        normal: point.normal.as_vec3(),
+        tangent: point.tangent.as_vec3(),
+        wo: point.wo.as_vec3(),
+        alpha_x: material.alpha.x() as f32,
+        alpha_y: material.alpha.y() as f32,
+        isotropic: material.is_isotropic(),
+        f0: material.f0.as_vec3(),
+        f90: material.f90 as f32,
+        albedo: material.albedo.as_vec3(),
+    }
+}

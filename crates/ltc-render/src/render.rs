@@ -1,0 +1,160 @@
+//! A scene to a picture.
+
+use std::time::Instant;
+
+use ltc_table::{Kind, Table};
+
+use crate::cpu::Cpu;
+use crate::gbuffer::GBuffer;
+use crate::reference::Reference;
+use crate::scene::World;
+use crate::shader::Shade;
+use crate::{Image, RenderError, Scene};
+
+/// What shades.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Backend {
+    /// LTC on the GPU, in `f32`. Needs the feature `gpu`.
+    Gpu,
+    /// LTC on the CPU, in `f64`.
+    Cpu,
+    /// The BRDFs themselves, sampled.
+    Reference,
+}
+
+/// The tables that the LTC back ends use.
+#[derive(Clone, Copy, Debug)]
+pub struct RenderTables<'a> {
+    /// For materials with `alpha_x = alpha_y`.
+    pub isotropic: &'a Table,
+    /// For all others.
+    pub anisotropic: &'a Table,
+}
+
+/// How to render.
+#[derive(Clone, Copy)]
+pub struct RenderOptions<'a> {
+    /// Camera samples a pixel: a square number from 1 to 64.
+    pub samples_per_pixel: u32,
+    /// For [`Backend::Reference`]: light samples for each of its three techniques, camera sample and light, from 1 to
+    /// 65,536.
+    pub reference_samples: u32,
+    /// For [`Backend::Reference`]: the same seed gives the same picture.
+    pub seed: u64,
+    /// Called now and then with what part is done, in [0, 1]; the last time with 1.
+    pub progress: Option<&'a (dyn Fn(f32) + Sync)>,
+}
+
+impl Default for RenderOptions<'_> {
+    fn default() -> Self {
+        Self { samples_per_pixel: 1, reference_samples: 256, seed: 1, progress: None }
+    }
+}
+
+/// A picture and how it came about.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// Linear radiance.
+    pub image: Image,
+    /// For each pixel, whether it shows a surface, at least in part. All others are the same with every back end.
+    pub on_surface: Vec<bool>,
+    /// Wall time of everything, the opening of a device included.
+    pub seconds: f64,
+    /// Wall time of shading alone.
+    pub shading_seconds: f64,
+    /// Where it was shaded.
+    pub device: String,
+}
+
+/// Renders the scene.
+///
+/// # Errors
+/// [`RenderError`] for an invalid scene or option, tables of the wrong kind, and failures of the GPU.
+pub fn render(
+    scene: &Scene,
+    tables: &RenderTables<'_>,
+    backend: Backend,
+    options: &RenderOptions<'_>,
+) -> Result<Rendered, RenderError> {
+    let start = Instant::now();
+    let side = options.check()?;
+    tables.check()?;
+    let world = scene.world()?;
+    let shader = open(backend, tables, &world, options)?;
+    let (width, height) = (world.view.width(), world.view.height());
+    let batch = u32::try_from(shader.batch()).unwrap_or(u32::MAX);
+    let band = (batch / (width * options.samples_per_pixel)).max(1);
+    let size = width as usize * height as usize;
+    let mut pixels = Vec::with_capacity(size);
+    let mut on_surface = Vec::with_capacity(size);
+    let mut shading_seconds = 0.0;
+    let mut row = 0;
+    while row < height {
+        let end = (row + band).min(height);
+        let buffer = GBuffer::cast(&world, row..end, side);
+        let before = Instant::now();
+        let radiance = shader.shade(buffer.points())?;
+        shading_seconds += before.elapsed().as_secs_f64();
+        for pixel in buffer.resolve(&radiance) {
+            pixels.push(pixel.radiance);
+            on_surface.push(pixel.on_surface);
+        }
+        row = end;
+        if let Some(progress) = options.progress {
+            progress(row as f32 / height as f32);
+        }
+    }
+    let image = Image::new(width, height, pixels);
+    let seconds = start.elapsed().as_secs_f64();
+    Ok(Rendered { image, on_surface, seconds, shading_seconds, device: shader.device() })
+}
+
+fn open<'a>(
+    backend: Backend,
+    tables: &'a RenderTables<'a>,
+    world: &'a World,
+    options: &RenderOptions<'_>,
+) -> Result<Box<dyn Shade + 'a>, RenderError> {
+    let lights = &world.lights;
+    Ok(match backend {
+        #[cfg(feature = "gpu")]
+        Backend::Gpu => Box::new(crate::gpu::GpuBackend::open(tables, lights)?),
+        #[cfg(not(feature = "gpu"))]
+        Backend::Gpu => return Err(RenderError::NoGpuBackend),
+        Backend::Cpu => Box::new(Cpu { tables, lights }),
+        Backend::Reference => {
+            Box::new(Reference { lights, samples: options.reference_samples, seed: options.seed })
+        }
+    })
+}
+
+impl RenderOptions<'_> {
+    /// The side of the grid of samples in a pixel.
+    fn check(&self) -> Result<u32, RenderError> {
+        if !(1..=65_536).contains(&self.reference_samples) {
+            let value = self.reference_samples.to_string();
+            return Err(RenderError::Option { name: "reference samples", value, must: "1 to 65536" });
+        }
+        let side = self.samples_per_pixel.isqrt();
+        if !(1..=8).contains(&side) || side * side != self.samples_per_pixel {
+            let value = self.samples_per_pixel.to_string();
+            let must = "a square number: 1, 4, 9, 16, 25, 36, 49 or 64";
+            return Err(RenderError::Option { name: "samples per pixel", value, must });
+        }
+        Ok(side)
+    }
+}
+
+impl RenderTables<'_> {
+    fn check(&self) -> Result<(), RenderError> {
+        for (table, kind, expected) in [
+            (self.isotropic, Kind::Isotropic, "isotropic"),
+            (self.anisotropic, Kind::Anisotropic, "anisotropic"),
+        ] {
+            if table.kind() != kind {
+                return Err(RenderError::WrongTable { expected });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,119 @@
+//! What can go wrong on the way to the GPU and back.
+
+use ltc_core::InputError;
+
+/// Why a device could not be opened, or a batch not be run.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GpuError {
+    /// `WGPU_BACKEND` holds no name of a back end.
+    #[error("WGPU_BACKEND is \"{value}\"; it must list some of vulkan, gl, metal, dx12")]
+    UnknownBackend {
+        /// What it holds.
+        value: String,
+    },
+    /// There is no graphics driver at all, or none that can compute.
+    #[error(
+        "no GPU adapter found among the back ends {backends}{rejected}; a software driver will do, for example \
+         Debian's package mesa-vulkan-drivers"
+    )]
+    NoAdapter {
+        /// The back ends that were asked.
+        backends: String,
+        /// Adapters that were there and why each was of no use, or empty.
+        rejected: String,
+    },
+    /// Filtering of 32-bit float textures was asked for and the device has none.
+    #[error("{device} cannot filter 32-bit float textures; use exact filtering")]
+    NotFilterable {
+        /// The device.
+        device: String,
+    },
+    /// A table does not fit the device.
+    #[error("the table's {what} is {found}, the device allows {limit}")]
+    TableTooLarge {
+        /// Which extent.
+        what: &'static str,
+        /// What the table needs.
+        found: u32,
+        /// What the device has.
+        limit: u32,
+    },
+    /// A table's axis is spaced in a way that the shaders do not know.
+    #[error("the shaders know the mapping sqrt_one_minus_cos for theta only, not for {quantity}")]
+    UnsupportedAxis {
+        /// The axis.
+        quantity: &'static str,
+    },
+    /// A point needs a table that was not given.
+    #[error("{item} {index} needs the {table} table, which was not given")]
+    MissingTable {
+        /// What needs it: a point or a query.
+        item: &'static str,
+        /// Its index.
+        index: usize,
+        /// Which table.
+        table: &'static str,
+    },
+    /// An isotropic table or material was asked for an anisotropic lobe.
+    #[error(
+        "{item} {index} is isotropic, but has alpha_x = {alpha_x}, alpha_y = {alpha_y}: they must be equal"
+    )]
+    NotIsotropic {
+        /// What asked: a point or a query.
+        item: &'static str,
+        /// Its index.
+        index: usize,
+        /// Width along the tangent.
+        alpha_x: f64,
+        /// Width along the bitangent.
+        alpha_y: f64,
+    },
+    /// An input is invalid; nothing of its batch was run.
+    #[error("{item} {index}: {source}")]
+    Input {
+        /// What it belongs to.
+        item: &'static str,
+        /// The index of that item.
+        index: usize,
+        /// What is wrong.
+        source: InputError,
+    },
+    /// A single item is larger than a buffer of the device.
+    #[error("{what} takes {bytes} bytes, the device's buffers hold {limit}")]
+    TooLarge {
+        /// What is too large.
+        what: &'static str,
+        /// Its size.
+        bytes: u64,
+        /// The device's limit.
+        limit: u64,
+    },
+    /// The device or its driver reported an error.
+    #[error("the graphics device failed: {reason}")]
+    Device {
+        /// Its words.
+        reason: String,
+    },
+    /// A result was left unwritten, or is NaN or infinite: the driver or the shader is broken.
+    #[error("{item} {index} came back {what}")]
+    BadOutput {
+        /// What the result belongs to.
+        item: &'static str,
+        /// The index of that item.
+        index: usize,
+        /// `unwritten` or the value.
+        what: String,
+    },
+}
+
+impl GpuError {
+    /// For `map_err` on a check of item number `index`.
+    pub(crate) fn input(item: &'static str, index: usize) -> impl FnOnce(InputError) -> Self {
+        move |source| Self::Input { item, index, source }
+    }
+
+    pub(crate) fn device(reason: impl ToString) -> Self {
+        Self::Device { reason: reason.to_string() }
+    }
+}

@@ -1,0 +1,128 @@
+//! Structures as the shaders lay them out. Sizes are those of WGSL, checked at compile time.
+
+use bytemuck::{Pod, Zeroable};
+use ltc_table::{Axis, Kind, Mapping, Table};
+
+use crate::GpuError;
+
+/// `LtcAxis`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct AxisUniform {
+    pub low: f32,
+    pub scale: f32,
+    pub last: f32,
+    pub mapping: u32,
+}
+
+/// `LtcAxes`: the one place where a table's axes become numbers in a shader.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct AxesUniform {
+    pub theta: AxisUniform,
+    pub phi: AxisUniform,
+    pub alpha: AxisUniform,
+    pub lambda: AxisUniform,
+}
+
+/// `PolygonJob`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct PolygonLayout {
+    pub m0: [f32; 3],
+    pub two_sided: u32,
+    pub m1: [f32; 3],
+    pub first_vertex: u32,
+    pub m2: [f32; 3],
+    pub vertex_count: u32,
+}
+
+/// `LookupJob`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct LookupLayout {
+    pub wo: [f32; 3],
+    pub alpha_x: f32,
+    pub alpha_y: f32,
+    pub isotropic: u32,
+    pub unused: [u32; 2],
+}
+
+/// `SurfacePoint`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct SurfaceLayout {
+    pub position: [f32; 3],
+    pub alpha_x: f32,
+    pub normal: [f32; 3],
+    pub alpha_y: f32,
+    pub tangent: [f32; 3],
+    pub isotropic: u32,
+    pub wo: [f32; 3],
+    pub f90: f32,
+    pub f0: [f32; 3],
+    pub unused_0: f32,
+    pub albedo: [f32; 3],
+    pub unused_1: f32,
+}
+
+/// `RectLight`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct LightLayout {
+    pub corner_0: [f32; 3],
+    pub two_sided: u32,
+    pub corner_1: [f32; 3],
+    pub unused_0: f32,
+    pub corner_2: [f32; 3],
+    pub unused_1: f32,
+    pub corner_3: [f32; 3],
+    pub unused_2: f32,
+    pub radiance: [f32; 3],
+    pub unused_3: f32,
+}
+
+const _: () = {
+    assert!(size_of::<AxesUniform>() == 64);
+    assert!(size_of::<PolygonLayout>() == 48);
+    assert!(size_of::<LookupLayout>() == 32);
+    assert!(size_of::<SurfaceLayout>() == 96);
+    assert!(size_of::<LightLayout>() == 80);
+};
+
+impl AxisUniform {
+    fn of(axis: &Axis) -> Self {
+        let [low, high] = axis.domain.map(|value| axis.mapping.coordinate(value));
+        let last = (axis.len - 1) as f64;
+        let mapping = match axis.mapping {
+            Mapping::Linear => 0,
+            Mapping::Sqrt => 1,
+            Mapping::SqrtOneMinusCos => 2,
+        };
+        Self { low: low as f32, scale: (last / (high - low)) as f32, last: last as f32, mapping }
+    }
+}
+
+impl AxesUniform {
+    /// A table's axes; those that it does not have are zero.
+    pub fn of(table: &Table) -> Result<Self, GpuError> {
+        let [theta, rest @ ..] = table.axes() else {
+            return Ok(Self::zeroed());
+        };
+        for axis in rest {
+            if axis.mapping == Mapping::SqrtOneMinusCos {
+                return Err(GpuError::UnsupportedAxis { quantity: axis.quantity.name() });
+            }
+        }
+        let mut axes = Self { theta: AxisUniform::of(theta), ..Self::zeroed() };
+        match (table.kind(), rest) {
+            (Kind::Anisotropic, [phi, alpha, lambda]) => {
+                axes.phi = AxisUniform::of(phi);
+                axes.alpha = AxisUniform::of(alpha);
+                axes.lambda = AxisUniform::of(lambda);
+            }
+            _ => axes.alpha = AxisUniform::of(&rest[0]),
+        }
+        Ok(axes)
+    }
+}

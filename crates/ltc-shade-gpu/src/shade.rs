@@ -1,0 +1,75 @@
+//! Deferred shading.
+
+use bytemuck::Zeroable;
+use wgpu::BindGroupLayout;
+
+use crate::compute::{Batch, Kernel, compile};
+use crate::layout::LightLayout;
+use crate::modules::Program;
+use crate::table_textures::{bind_group, bind_group_layout};
+use crate::{Gpu, GpuError, RectLight, SurfacePoint, Tables};
+
+/// Points that go to the device at once: 12 MiB of G-buffer.
+const CHUNK: usize = 1 << 17;
+
+/// The pipeline that shades a G-buffer.
+///
+/// The radiance of a point is the sum over lights of `radiance · ((F0·n + (F90 − F0)·f) · s + albedo · d)`: n and f are the
+/// table's magnitude and Fresnel term, s the fraction of the table's lobe and d the fraction of Lambert's that see the
+/// light. A point's lobe is looked up once for all lights. Lights cast no shadows. Where an interpolated matrix is
+/// singular, s is 0.
+#[derive(Debug)]
+pub struct Shader {
+    kernel: Kernel,
+    tables: BindGroupLayout,
+}
+
+impl Shader {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// [`GpuError::Device`].
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let module = compile(gpu, Program::Shade(gpu.filtering()))?;
+        let tables = bind_group_layout(gpu)?;
+        Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(&tables), 2)?, tables })
+    }
+
+    /// Radiance towards the eye of each point, linear RGB, in the unit of the lights' radiance.
+    ///
+    /// # Errors
+    /// [`GpuError::Input`] and [`GpuError::NotIsotropic`] with the index of the first invalid point or light,
+    /// [`GpuError::MissingTable`]; then nothing is run.
+    pub fn shade(
+        &self,
+        gpu: &Gpu,
+        tables: Tables<'_>,
+        points: &[SurfacePoint],
+        lights: &[RectLight],
+    ) -> Result<Vec<[f32; 3]>, GpuError> {
+        let mut light_buffer =
+            lights.iter().enumerate().map(|(i, light)| light.encode(i)).collect::<Result<Vec<_>, _>>()?;
+        let point_buffer =
+            points.iter().enumerate().map(|(i, p)| p.encode(i, tables)).collect::<Result<Vec<_>, _>>()?;
+        if lights.is_empty() {
+            // A buffer cannot be empty; the count says that there is no light in it.
+            light_buffer.push(LightLayout::zeroed());
+        }
+        let bound = bind_group(gpu, &self.tables, tables)?;
+        let mut radiance = Vec::with_capacity(points.len());
+        for chunk in point_buffer.chunks(CHUNK) {
+            let batch = Batch {
+                item: "point",
+                first: radiance.len(),
+                items: chunk.len(),
+                counts: [chunk.len() as u32, lights.len() as u32, 0, 0],
+                inputs: &[bytemuck::cast_slice(chunk), bytemuck::cast_slice(&light_buffer)],
+                floats_each: 4,
+                tables: Some(&bound),
+            };
+            let floats = self.kernel.run(gpu, &batch)?;
+            radiance.extend(floats.as_chunks::<4>().0.iter().map(|[r, g, b, _]| [*r, *g, *b]));
+        }
+        Ok(radiance)
+    }
+}

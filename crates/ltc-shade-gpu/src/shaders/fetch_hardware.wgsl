@@ -1,0 +1,49 @@
+// Interpolation by the texture unit: 3 fetches for the isotropic table, 6 for the anisotropic. Hardware rounds the weights
+// to about 8 bits. No bindings: textures are parameters. Needs: table, isotropic, anisotropic.
+
+fn ltc_texel(place: LtcPlace) -> f32 {
+    return f32(place.cell) + place.t + 0.5;
+}
+
+fn ltc_fetch_isotropic(texture: texture_2d_array<f32>, filtering: sampler, place: LtcIsotropicPlace) -> LtcTexels {
+    let at = vec2f(ltc_texel(place.alpha), ltc_texel(place.theta)) / vec2f(textureDimensions(texture));
+    return LtcTexels(
+        textureSampleLevel(texture, filtering, at, 0, 0.0),
+        textureSampleLevel(texture, filtering, at, 1, 0.0),
+        textureSampleLevel(texture, filtering, at, 2, 0.0),
+    );
+}
+
+fn ltc_fetch_theta(
+    texture: texture_3d<f32>,
+    filtering: sampler,
+    axes: LtcAxes,
+    place: LtcAnisotropicPlace,
+    theta: f32,
+) -> LtcTexels {
+    let size = vec3f(textureDimensions(texture));
+    let phis = axes.phi.last + 1.0;
+    let thetas = axes.theta.last + 1.0;
+    let at = vec3f(ltc_texel(place.lambda), ltc_texel(place.alpha), ltc_texel(place.phi) + phis * theta) / size;
+    // phi stays within the nodes of its theta: the filter never reaches into the next one.
+    let group = vec3f(0.0, 0.0, phis * thetas / size.z);
+    return LtcTexels(
+        textureSampleLevel(texture, filtering, at, 0.0),
+        textureSampleLevel(texture, filtering, at + group, 0.0),
+        textureSampleLevel(texture, filtering, at + 2.0 * group, 0.0),
+    );
+}
+
+fn ltc_fetch_anisotropic(
+    texture: texture_3d<f32>,
+    filtering: sampler,
+    axes: LtcAxes,
+    place: LtcAnisotropicPlace,
+) -> LtcTexels {
+    let low = f32(place.theta.cell);
+    return ltc_blend(
+        ltc_fetch_theta(texture, filtering, axes, place, low),
+        ltc_fetch_theta(texture, filtering, axes, place, low + 1.0),
+        place.theta.t,
+    );
+}

@@ -1,0 +1,78 @@
+// What all tables share: axes, texels, the result of a lookup. No bindings. Needs: math.
+
+// How an axis spaces its nodes; filled from the table, see `AxisUniform` in Rust.
+struct LtcAxis {
+    // Mapped coordinate of the first node.
+    low: f32,
+    // Cells per unit of the mapped coordinate.
+    scale: f32,
+    // Number of cells: the last node.
+    last: f32,
+    // LTC_LINEAR, LTC_SQRT or LTC_SQRT_ONE_MINUS_COS.
+    mapping: u32,
+}
+
+struct LtcAxes {
+    theta: LtcAxis,
+    phi: LtcAxis,
+    alpha: LtcAxis,
+    lambda: LtcAxis,
+}
+
+const LTC_LINEAR: u32 = 0u;
+const LTC_SQRT: u32 = 1u;
+const LTC_SQRT_ONE_MINUS_COS: u32 = 2u;
+
+// A place along an axis: between nodes `cell` and `cell + 1`, `t` of the way.
+struct LtcPlace {
+    cell: u32,
+    t: f32,
+}
+
+// The three texels of an entry, or of an interpolation between entries:
+// m00 m01 m02 m10, m11 m12 m20 m21, m22 magnitude fresnel 0.
+struct LtcTexels {
+    g0: vec4f,
+    g1: vec4f,
+    g2: vec4f,
+}
+
+struct LtcLookup {
+    // target_from_cosine in the shading frame.
+    m: mat3x3f,
+    magnitude: f32,
+    fresnel: f32,
+}
+
+fn ltc_place(axis: LtcAxis, coordinate: f32) -> LtcPlace {
+    let position = clamp((coordinate - axis.low) * axis.scale, 0.0, axis.last);
+    let cell = min(floor(position), axis.last - 1.0);
+    return LtcPlace(u32(cell), position - cell);
+}
+
+// For every quantity but theta; LTC_SQRT_ONE_MINUS_COS is for theta alone.
+fn ltc_place_of_value(axis: LtcAxis, value: f32) -> LtcPlace {
+    return ltc_place(axis, select(value, sqrt(max(value, 0.0)), axis.mapping == LTC_SQRT));
+}
+
+// The place of the polar angle of the unit vector wo, without the cancellation that acos and 1 - cos have near 0.
+fn ltc_place_of_theta(axis: LtcAxis, wo: vec3f) -> LtcPlace {
+    let cosine = max(wo.z, 0.0);
+    let squared_sine = wo.x * wo.x + wo.y * wo.y;
+    if axis.mapping == LTC_SQRT_ONE_MINUS_COS {
+        return ltc_place(axis, sqrt(squared_sine / (1.0 + cosine)));
+    }
+    return ltc_place_of_value(axis, ltc_atan2(sqrt(squared_sine), cosine));
+}
+
+fn ltc_matrix(texels: LtcTexels) -> mat3x3f {
+    return mat3x3f(
+        vec3f(texels.g0.x, texels.g0.w, texels.g1.z),
+        vec3f(texels.g0.y, texels.g1.x, texels.g1.w),
+        vec3f(texels.g0.z, texels.g1.y, texels.g2.x),
+    );
+}
+
+fn ltc_blend(a: LtcTexels, b: LtcTexels, t: f32) -> LtcTexels {
+    return LtcTexels(mix(a.g0, b.g0, t), mix(a.g1, b.g1, t), mix(a.g2, b.g2, t));
+}

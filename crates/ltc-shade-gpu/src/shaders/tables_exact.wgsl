@@ -1,0 +1,16 @@
+// Bindings of the tables, interpolated by hand. Needs: isotropic, anisotropic, fetch_exact.
+
+@group(0) @binding(0) var<uniform> isotropic_axes: LtcAxes;
+@group(0) @binding(1) var isotropic_table: texture_2d_array<f32>;
+@group(0) @binding(2) var<uniform> anisotropic_axes: LtcAxes;
+@group(0) @binding(3) var anisotropic_table: texture_3d<f32>;
+
+fn lookup_isotropic(wo: vec3f, alpha: f32) -> LtcLookup {
+    let place = ltc_isotropic_place(isotropic_axes, wo, alpha);
+    return ltc_isotropic_decode(ltc_fetch_isotropic(isotropic_table, place), wo);
+}
+
+fn lookup_anisotropic(wo: vec3f, alpha_x: f32, alpha_y: f32) -> LtcLookup {
+    let place = ltc_anisotropic_place(anisotropic_axes, wo, alpha_x, alpha_y);
+    return ltc_anisotropic_decode(ltc_fetch_anisotropic(anisotropic_table, anisotropic_axes, place), place);
+}

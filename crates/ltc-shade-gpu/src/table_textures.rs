@@ -1,0 +1,202 @@
+//! Tables as textures.
+
+use bytemuck::Zeroable;
+use ltc_table::{Kind, Table, ktx2};
+use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
+use wgpu::{BindGroup, BindGroupLayout, ShaderStages, Texture, TextureDimension, TextureViewDimension};
+
+use crate::layout::AxesUniform;
+use crate::{Filtering, Gpu, GpuError};
+
+/// A table on the device: three RGBA32F groups in the layout of [`ltc_table::ktx2`], and its axes.
+#[derive(Debug)]
+pub struct TableTextures {
+    kind: Kind,
+    axes: AxesUniform,
+    texture: Texture,
+}
+
+/// The tables that a pass may look into. A missing one is an error only for whoever needs it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tables<'a> {
+    /// For isotropic materials; they go to the anisotropic table where this one is missing.
+    pub isotropic: Option<&'a TableTextures>,
+    /// For anisotropic materials.
+    pub anisotropic: Option<&'a TableTextures>,
+}
+
+impl TableTextures {
+    /// Uploads a table of either kind, rounded to `f32`.
+    ///
+    /// # Errors
+    /// [`GpuError::TableTooLarge`] when the device's textures are too small for it, [`GpuError::UnsupportedAxis`],
+    /// [`GpuError::Device`].
+    pub fn upload(gpu: &Gpu, table: &Table) -> Result<Self, GpuError> {
+        let axes = AxesUniform::of(table)?;
+        let size = extent(table);
+        check_extent(gpu, table.kind(), size)?;
+        let texels: Vec<[f32; 4]> = ktx2::texels(table).iter().map(|t| t.map(|v| v as f32)).collect();
+        let texture = gpu.checked(|| Ok(create(gpu, table.kind(), size, &texels)))?;
+        Ok(Self { kind: table.kind(), axes, texture })
+    }
+
+    /// Isotropic or anisotropic.
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Bytes of texture memory.
+    pub fn bytes(&self) -> u64 {
+        let size = self.texture.size();
+        u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers) * 16
+    }
+
+    /// What stands where no table was given: one texel, never looked at.
+    fn placeholder(gpu: &Gpu, kind: Kind) -> Self {
+        let size = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: ktx2::GROUPS as u32 };
+        let texels = [[0.0; 4]; ktx2::GROUPS];
+        Self { kind, axes: AxesUniform::zeroed(), texture: create(gpu, kind, size, &texels) }
+    }
+
+    fn view(&self) -> wgpu::TextureView {
+        self.texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(view_dimension(self.kind)),
+            ..Default::default()
+        })
+    }
+}
+
+fn extent(table: &Table) -> wgpu::Extent3d {
+    let shape = table.shape();
+    let [width, height] = [shape[shape.len() - 1] as u32, shape[shape.len() - 2] as u32];
+    let slices: usize = shape[..shape.len() - 2].iter().product();
+    wgpu::Extent3d { width, height, depth_or_array_layers: (slices * ktx2::GROUPS) as u32 }
+}
+
+fn check_extent(gpu: &Gpu, kind: Kind, size: wgpu::Extent3d) -> Result<(), GpuError> {
+    let limits = gpu.device().limits();
+    let side = match kind {
+        Kind::Isotropic => limits.max_texture_dimension_2d,
+        Kind::Anisotropic => limits.max_texture_dimension_3d,
+    };
+    let layers = match kind {
+        Kind::Isotropic => limits.max_texture_array_layers,
+        Kind::Anisotropic => side,
+    };
+    for (what, found, limit) in [
+        ("width", size.width, side),
+        ("height", size.height, side),
+        ("depth", size.depth_or_array_layers, layers),
+    ] {
+        if found > limit {
+            return Err(GpuError::TableTooLarge { what, found, limit });
+        }
+    }
+    Ok(())
+}
+
+fn create(gpu: &Gpu, kind: Kind, size: wgpu::Extent3d, texels: &[[f32; 4]]) -> Texture {
+    let dimension = match kind {
+        Kind::Isotropic => TextureDimension::D2,
+        Kind::Anisotropic => TextureDimension::D3,
+    };
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("ltc table"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension,
+        format: wgpu::TextureFormat::Rgba32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    };
+    let bytes = bytemuck::cast_slice(texels);
+    gpu.device().create_texture_with_data(gpu.queue(), &descriptor, TextureDataOrder::LayerMajor, bytes)
+}
+
+fn view_dimension(kind: Kind) -> TextureViewDimension {
+    match kind {
+        Kind::Isotropic => TextureViewDimension::D2Array,
+        Kind::Anisotropic => TextureViewDimension::D3,
+    }
+}
+
+/// The bindings of group 0, as `tables_exact.wgsl` and `tables_hardware.wgsl` have them.
+pub(crate) fn bind_group_layout(gpu: &Gpu) -> Result<BindGroupLayout, GpuError> {
+    let hardware = gpu.filtering() == Filtering::Hardware;
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: ShaderStages::COMPUTE,
+        ty,
+        count: None,
+    };
+    let uniform = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let texture = |kind| wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: hardware },
+        view_dimension: view_dimension(kind),
+        multisampled: false,
+    };
+    let mut entries = vec![
+        entry(0, uniform),
+        entry(1, texture(Kind::Isotropic)),
+        entry(2, uniform),
+        entry(3, texture(Kind::Anisotropic)),
+    ];
+    if hardware {
+        entries.push(entry(4, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)));
+    }
+    gpu.checked(|| {
+        let label = Some("ltc tables");
+        Ok(gpu
+            .device()
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries }))
+    })
+}
+
+/// Binds the tables that there are, and placeholders for the others.
+pub(crate) fn bind_group(
+    gpu: &Gpu,
+    layout: &BindGroupLayout,
+    tables: Tables<'_>,
+) -> Result<BindGroup, GpuError> {
+    gpu.checked(|| {
+        let placeholders =
+            [Kind::Isotropic, Kind::Anisotropic].map(|kind| TableTextures::placeholder(gpu, kind));
+        let isotropic = tables.isotropic.unwrap_or(&placeholders[0]);
+        let anisotropic = tables.anisotropic.unwrap_or(&placeholders[1]);
+        let device = gpu.device();
+        let axes = |table: &TableTextures| {
+            device.create_buffer_init(&BufferInitDescriptor {
+                label: Some("ltc axes"),
+                contents: bytemuck::bytes_of(&table.axes),
+                usage: wgpu::BufferUsages::UNIFORM,
+            })
+        };
+        let (axes_2d, axes_4d) = (axes(isotropic), axes(anisotropic));
+        let (view_2d, view_4d) = (isotropic.view(), anisotropic.view());
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        let mut resources = vec![
+            axes_2d.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&view_2d),
+            axes_4d.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&view_4d),
+        ];
+        if gpu.filtering() == Filtering::Hardware {
+            resources.push(wgpu::BindingResource::Sampler(&sampler));
+        }
+        let entries: Vec<_> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        let label = Some("ltc tables");
+        Ok(device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries }))
+    })
+}

@@ -1,0 +1,149 @@
+//! Table lookups: GPU against `ltc_table`.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use ltc_shade_gpu::{Filtering, Gpu, GpuError, LookupResult, Lookups, TableTextures};
+use ltc_table::{Axis, Mapping, Quantity, Query, Table};
+
+use crate::support::{gpu, random};
+use crate::tables;
+
+/// Between an interpolation in f32 and one in f64, absolute; entries are up to 1.
+const TOLERANCE: f64 = 1e-5;
+/// Where the texture unit rounds weights to 8 bits: 1/512 of what changes from node to node, at most about 1, on each of
+/// four axes.
+const HARDWARE_TOLERANCE: f64 = 4.0 / 512.0;
+
+fn anisotropic_queries(count: usize) -> Vec<Query> {
+    let mut rng = random(11);
+    let mut queries: Vec<_> = (0..count)
+        .map(|_| Query {
+            theta: rng() * FRAC_PI_2,
+            phi: (rng() - 0.5) * 4.0 * TAU,
+            alpha_x: rng(),
+            alpha_y: rng(),
+        })
+        .collect();
+    // Narrow lobes, views along the normal (also exactly) and along the surface.
+    for (theta, alpha) in [(0.0, 0.5), (1e-9, 0.2), (1e-4, 0.01), (FRAC_PI_2, 0.3), (FRAC_PI_2 - 1e-6, 0.0)] {
+        for step in 0..16 {
+            let phi = 0.1 + f64::from(step) * 0.8;
+            queries.push(Query { theta, phi, alpha_x: alpha, alpha_y: 1.0 - alpha });
+            queries.push(Query { theta, phi, alpha_x: 1.0 - alpha, alpha_y: alpha });
+        }
+    }
+    queries
+}
+
+fn isotropic_queries(count: usize) -> Vec<Query> {
+    anisotropic_queries(count).into_iter().map(|q| Query { alpha_y: q.alpha_x, ..q }).collect()
+}
+
+fn on_gpu(gpu: &Gpu, table: &Table, queries: &[Query]) -> Vec<LookupResult> {
+    let textures = TableTextures::upload(gpu, table).unwrap();
+    Lookups::new(gpu).unwrap().lookup(gpu, &textures, queries).unwrap()
+}
+
+/// The largest difference of any number between GPU and CPU.
+fn largest_error(table: &Table, queries: &[Query], results: &[LookupResult]) -> f64 {
+    assert_eq!(queries.len(), results.len());
+    let mut largest = 0.0_f64;
+    for (query, result) in queries.iter().zip(results) {
+        let expected = table.lookup(query).unwrap();
+        let numbers = expected.lobes[0].m.iter().zip(result.m);
+        let channels =
+            [(&expected.magnitude, result.magnitude), (&expected.fresnel, result.fresnel)].into_iter();
+        for (a, b) in numbers.chain(channels) {
+            largest = largest.max((a - f64::from(b)).abs());
+        }
+    }
+    largest
+}
+
+/// A table over a part of the domain: axes that do not begin at 0.
+fn cropped() -> Table {
+    let axes = vec![
+        Axis { domain: [0.2, 1.2], ..Axis::full(Quantity::Theta, Mapping::SqrtOneMinusCos, 4) },
+        Axis { domain: [0.3, 1.1], ..Axis::full(Quantity::Phi, Mapping::Linear, 3) },
+        Axis { domain: [0.1, 0.6], ..Axis::full(Quantity::Alpha, Mapping::Sqrt, 5) },
+        Axis { domain: [0.25, 0.75], ..Axis::full(Quantity::Lambda, Mapping::Linear, 2) },
+    ];
+    tables::table(axes, |nodes| [nodes[0].1, nodes[1].1, nodes[2].1, nodes[3].1])
+}
+
+fn all_tables() -> Vec<(&'static str, Table)> {
+    vec![
+        ("linear", tables::anisotropic(Mapping::Linear, Mapping::Linear)),
+        ("sqrt", tables::anisotropic(Mapping::SqrtOneMinusCos, Mapping::Sqrt)),
+        ("cropped", cropped()),
+    ]
+}
+
+#[test]
+fn exact_filtering_is_the_cpu_lookup() {
+    let Some(gpu) = gpu(Filtering::Exact) else { return };
+    let queries = anisotropic_queries(10_000);
+    for (name, table) in all_tables() {
+        let error = largest_error(&table, &queries, &on_gpu(&gpu, &table, &queries));
+        println!("anisotropic, {name}: largest error {error:.2e}");
+        assert!(error <= TOLERANCE, "{name}: {error}");
+    }
+    let (table, queries) = (tables::isotropic(), isotropic_queries(10_000));
+    let error = largest_error(&table, &queries, &on_gpu(&gpu, &table, &queries));
+    println!("isotropic: largest error {error:.2e}");
+    assert!(error <= TOLERANCE, "{error}");
+}
+
+#[test]
+fn hardware_filtering_is_as_near_as_its_weights_allow() {
+    let Some(gpu) = gpu(Filtering::Hardware) else { return };
+    let queries = anisotropic_queries(10_000);
+    for (name, table) in all_tables() {
+        let error = largest_error(&table, &queries, &on_gpu(&gpu, &table, &queries));
+        println!("anisotropic, {name}, by hardware: largest error {error:.2e}");
+        assert!(error <= HARDWARE_TOLERANCE, "{name}: {error}");
+    }
+    let (table, queries) = (tables::isotropic(), isotropic_queries(10_000));
+    let error = largest_error(&table, &queries, &on_gpu(&gpu, &table, &queries));
+    println!("isotropic, by hardware: largest error {error:.2e}");
+    assert!(error <= HARDWARE_TOLERANCE, "{error}");
+}
+
+#[test]
+fn a_wrong_fold_is_seen() {
+    // The control: without the folds of phi and alpha the results would be those of other queries.
+    let Some(gpu) = gpu(Filtering::Exact) else { return };
+    let table = tables::anisotropic(Mapping::Linear, Mapping::Linear);
+    let query = Query { theta: 0.9, phi: 0.4, alpha_x: 0.5, alpha_y: 0.2 };
+    let mistakes = [
+        Query { phi: -0.4, ..query },
+        Query { phi: PI - 0.4, ..query },
+        Query { phi: PI + 0.4, ..query },
+        Query { alpha_x: 0.2, alpha_y: 0.5, ..query },
+    ];
+    let results = on_gpu(&gpu, &table, &[query; 4]);
+    for (mistake, result) in mistakes.iter().zip(results) {
+        assert!(largest_error(&table, &[*mistake], &[result]) > 1e3 * TOLERANCE, "{mistake:?}");
+    }
+}
+
+#[test]
+fn invalid_queries_are_refused_by_index() {
+    let Some(gpu) = gpu(Filtering::Exact) else { return };
+    let lookups = Lookups::new(&gpu).unwrap();
+    let good = Query { theta: 0.3, phi: 0.1, alpha_x: 0.5, alpha_y: 0.5 };
+    let flat = TableTextures::upload(&gpu, &tables::isotropic()).unwrap();
+    for bad in [
+        Query { theta: f64::NAN, ..good },
+        Query { theta: 2.0, ..good },
+        Query { phi: f64::INFINITY, ..good },
+        Query { alpha_x: 1.5, ..good },
+    ] {
+        let error = lookups.lookup(&gpu, &flat, &[good, bad]).unwrap_err();
+        assert!(matches!(error, GpuError::Input { item: "query", index: 1, .. }), "{error}");
+    }
+    let stretched = Query { alpha_y: 0.4, ..good };
+    let error = lookups.lookup(&gpu, &flat, &[stretched]).unwrap_err();
+    assert!(matches!(error, GpuError::NotIsotropic { index: 0, .. }), "{error}");
+    assert!(lookups.lookup(&gpu, &flat, &[]).unwrap().is_empty());
+}

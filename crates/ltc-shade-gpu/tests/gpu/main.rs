@@ -1,0 +1,9 @@
+//! The GPU against the CPU. Runs on any adapter, a software driver included; skips where there is none, unless `CI` is set.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
+
+mod lookups;
+mod polygons;
+mod shading;
+mod support;
+mod tables;
