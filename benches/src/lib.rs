@@ -1,1 +1,1 @@
-//! Run time against error.
+//! Run time against error: the benches are in `benches/`; run them with `cargo bench -p ltc-benches`.

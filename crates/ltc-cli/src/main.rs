@@ -52,11 +52,22 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            // One line, whatever the cause: names from outside may hold line breaks.
-            eprintln!("error: {}", format!("{error:#}").replace(['\n', '\r'], " "));
+            eprintln!("error: {}", one_line(&error));
             ExitCode::FAILURE
         }
     }
+}
+
+/// An error with its causes, those left out that an error before them tells already. One line, whatever the cause: names
+/// from outside may hold line breaks.
+fn one_line(error: &anyhow::Error) -> String {
+    let mut line = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if !line.contains(&cause) {
+            line = if line.is_empty() { cause } else { format!("{line}: {cause}") };
+        }
+    }
+    line.replace(['\n', '\r'], " ")
 }
 
 /// Whoever read our output has had enough, as `head` does.

@@ -19,9 +19,11 @@ pub fn standard(count: usize, seed: u64, isotropic: bool) -> Vec<Query> {
 pub fn training(rng: &mut SplitMix64, count: usize, isotropic: bool) -> Vec<Query> {
     (0..count)
         .map(|_| {
-            let mut query = one(rng, isotropic, 0.006, 0.03, 89.0);
-            if rng.unit() < 0.05 {
-                let alpha = 1e-3 * 20.0_f64.powf(rng.unit());
+            let mut query = one(rng, isotropic, 0.004, 0.03, 89.0);
+            // A tenth goes to the narrow end, down to where tables begin and a little below: lookups there come to the
+            // first entries themselves, which few queries of the draw do.
+            if rng.unit() < 0.1 {
+                let alpha = 0.004 * 8.0_f64.powf(rng.unit());
                 (query.alpha_x, query.alpha_y) = (alpha, alpha * query.alpha_y / query.alpha_x);
             }
             query

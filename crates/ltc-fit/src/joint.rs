@@ -102,7 +102,9 @@ fn query_gradient(
     let alpha = ltc_core::Alpha::new(folded.alpha, folded.alpha * folded.lambda)?;
     brdf.sample_lobe(crate::direction(folded.theta, folded.phi), alpha, points, lobe);
     let (value, gradient) = total_variation_gradient(lobe, interpolated);
-    let gradient = if gradient.is_finite() { gradient } else { DMat3::ZERO };
+    // A matrix of the wrong handedness may have a good lobe, but leads away from where all others are.
+    let usable = interpolated.determinant() > 0.0 && gradient.is_finite();
+    let gradient = if usable { gradient } else { regular::volume_gradient(interpolated) * -1.0 };
     Ok((place, value, gradient))
 }
 
@@ -178,7 +180,7 @@ impl<'a> Unknowns<'a> {
 
 /// Whether entry `i` of a column-major 3×3 matrix lies on its diagonal.
 fn on_diagonal(i: usize) -> bool {
-    i % 4 == 0
+    i.is_multiple_of(4)
 }
 
 /// `exp(diag Δ) + offdiag Δ`: scales stay positive however far they are pushed.

@@ -10,7 +10,7 @@ pub(crate) const LANES: usize = 4;
 
 /// Weighted samples of one normalised, cosine-weighted BRDF lobe `p`.
 ///
-/// Arrays of equal length, a multiple of [`LANES`]. With `pdf` the density the samples were drawn from, N their number:
+/// Arrays of equal length, padded to a multiple of the lanes that the kernels take. With `pdf` the density the samples were drawn from, N their number:
 /// `weight = (p/pdf) / Σ(p/pdf)` and `inverse = 1 / (N pdf)`, so that `∫ max(0, p − q) ≈ Σ max(0, weight − q · inverse)`.
 #[derive(Clone, Debug, Default)]
 pub struct Lobe {
@@ -72,7 +72,7 @@ impl Lobe {
         }
         self.magnitude = sum / n as f64;
         self.fresnel /= n as f64;
-        while self.len() % LANES != 0 || self.is_empty() {
+        while !self.len().is_multiple_of(LANES) || self.is_empty() {
             self.push(DVec3::Z, 0.0, 0.0);
         }
     }

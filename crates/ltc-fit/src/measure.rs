@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::{Brdf, DiskPoints, FitError, Lattice, Lobe, draw, total_variation};
 
-/// How [`measure`] samples.
+/// How the errors of a table are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MeasureSettings {

@@ -32,7 +32,7 @@ pub fn push_apart(axes: &[Axis], m: &[DMat3], seed: u64, weight: f64, by_entry: 
 }
 
 /// The points, of so many random ones, whose interpolated matrix spans less than `least`.
-pub fn find_flat(axes: &[Axis], m: &[DMat3], points: usize, least: f64, seed: u64) -> Vec<Vec<Corner>> {
+fn find_flat(axes: &[Axis], m: &[DMat3], points: usize, least: f64, seed: u64) -> Vec<Vec<Corner>> {
     const CHUNK: usize = 512;
     let chunks: Vec<Vec<Vec<Corner>>> = (0..points.div_ceil(CHUNK))
         .into_par_iter()
@@ -73,7 +73,7 @@ fn lengths(m: DMat3) -> f64 {
 }
 
 /// The derivative of [`volume`] with the columns' lengths held.
-fn volume_gradient(m: DMat3) -> DMat3 {
+pub fn volume_gradient(m: DMat3) -> DMat3 {
     let cofactors =
         DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
     cofactors * (1.0 / lengths(m))

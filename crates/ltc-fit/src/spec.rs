@@ -43,14 +43,14 @@ impl FitSpec {
     /// # Errors
     /// [`FitError::NoSuchPreset`].
     pub fn preset(name: &str) -> Result<Self, FitError> {
-        use Quantity::{Alpha, Lambda, Phi, Theta};
+        use Quantity::{Alpha, Theta};
         let (axes, joint) = match name {
             "ggx-isotropic" => (
                 vec![Axis::full(Theta, Mapping::SqrtOneMinusCos, 64), Axis::full(Alpha, Mapping::Sqrt, 64)],
                 JointSettings { steps: 200, queries: 2048, samples: 256, learning_rate: 3e-3, seed: 3 },
             ),
             "ggx-anisotropic" => (
-                [Theta, Phi, Alpha, Lambda].map(|q| Axis::full(q, Mapping::Linear, 8)).to_vec(),
+                anisotropic_axes(),
                 JointSettings { steps: 1500, queries: 2048, samples: 256, learning_rate: 6e-3, seed: 3 },
             ),
             _ => {
@@ -62,7 +62,7 @@ impl FitSpec {
             name: name.to_owned(),
             brdf: GgxFamily.name().to_owned(),
             axes,
-            floors: Floors { alpha: 1e-3, lambda: 0.02, theta_max: 89.5_f64.to_radians() },
+            floors: Floors { alpha: 1e-3, lambda: 0.03, theta_max: 89.5_f64.to_radians() },
             objective: "total_variation".to_owned(),
             entries: EntrySettings { samples: 512, iterations: 100 },
             joint,
@@ -156,6 +156,16 @@ impl FitSpec {
         }
         Ok(())
     }
+}
+
+/// 8⁴ nodes, evenly spaced. The widths begin above 0: a lobe of width 0 is no lobe, and an entry that stands for one would
+/// be fitted to nothing but its neighbours' wishes. Narrower queries get the narrowest lobe there is.
+fn anisotropic_axes() -> Vec<Axis> {
+    use Quantity::{Alpha, Lambda, Phi, Theta};
+    let mut axes = [Theta, Phi, Alpha, Lambda].map(|q| Axis::full(q, Mapping::Linear, 8));
+    axes[2].domain[0] = 0.005;
+    axes[3].domain[0] = 0.03;
+    axes.to_vec()
 }
 
 #[cfg(test)]

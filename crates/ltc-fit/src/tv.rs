@@ -12,8 +12,8 @@ pub fn total_variation(lobe: &Lobe, m: DMat3) -> f64 {
     let mut sum = [0.0; LANES];
     for i in (0..lobe.len()).step_by(LANES) {
         let s = kernel.sample(lobe, i);
-        for k in 0..LANES {
-            sum[k] += s.excess[k].max(0.0);
+        for (lane, excess) in sum.iter_mut().zip(s.excess) {
+            *lane += excess.max(0.0);
         }
     }
     sum.iter().sum()

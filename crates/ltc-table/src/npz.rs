@@ -51,7 +51,7 @@ pub fn write(table: &Table, precision: Precision, channels: Channels) -> Result<
     archive.finish()
 }
 
-/// Reads the arrays of [`write`] back, at any precision. The axes come from the manifest and must fit.
+/// Reads the arrays of [`write()`] back, at any precision. The axes come from the manifest and must fit.
 ///
 /// # Errors
 /// [`TableError`] for an archive that is damaged, lacks an array, or contradicts the axes.

@@ -127,7 +127,8 @@ impl Table {
 
     /// The lobe, magnitude and Fresnel term of a query, N-linearly interpolated in `M` between the nodes around it.
     ///
-    /// An isotropic table's entries have φ = 0; its lobe is turned by φ: `M(φ) = R_z(φ) M(0) R_z(−φ)`.
+    /// An isotropic table's entries have φ = 0; its lobe is turned by φ: `M(φ) = R_z(φ) M(0) R_z(−φ)`. det M > 0 always:
+    /// where interpolation comes to a matrix without, the nearest entry answers.
     ///
     /// # Errors
     /// [`TableError::Input`] for an invalid query, [`TableError::NotIsotropic`] where an isotropic table is asked for
@@ -154,10 +155,19 @@ impl Table {
 
     fn interpolate<const N: usize>(&self, values: [f64; N]) -> (DMat3, f64, f64) {
         let mut result = (DMat3::ZERO, 0.0, 0.0);
-        for Corner { index, weight } in crate::lookup::corners(&self.axes, values) {
+        let mut nearest = Corner { index: 0, weight: -1.0 };
+        for corner in crate::lookup::corners(&self.axes, values) {
+            let Corner { index, weight } = corner;
             result.0 += self.m[index] * weight;
             result.1 += self.magnitude[index] * weight;
             result.2 += self.fresnel[index] * weight;
+            if weight > nearest.weight {
+                nearest = corner;
+            }
+        }
+        // Entries with det M > 0 may still interpolate to a matrix without, between very thin lobes that lie askew.
+        if Ltc::<f64>::new(result.0).is_err() {
+            result.0 = self.m[nearest.index];
         }
         result
     }
@@ -248,6 +258,31 @@ mod tests {
         assert!(DMat3::from_row_array(turned.lobes[0].m).abs_diff_eq(expected, 1e-15));
         let error = table.lookup(&query(0.7, 0.0, 0.5, 0.4)).unwrap_err();
         assert!(matches!(error, TableError::NotIsotropic { .. }));
+    }
+
+    #[test]
+    fn where_interpolation_turns_space_inside_out_the_nearest_entry_answers() {
+        let good = isotropic();
+        // Neighbours along α that are each other's half turn about y: half-way, x and z of the lobe are parallel.
+        let turn = DMat3::from_diagonal(glam::DVec3::new(-1.0, 1.0, -1.0));
+        let m: Vec<DMat3> =
+            (0..good.m.len()).map(|i| if i % 2 == 0 { good.m[i] } else { good.m[i] * turn }).collect();
+        let table = Table::new(
+            good.axes.clone(),
+            m,
+            good.magnitude.clone(),
+            good.fresnel.clone(),
+            CellStats::default(),
+        );
+        let table = table.unwrap();
+        let mut fallbacks = 0;
+        for i in 0..1000 {
+            let alpha = f64::from(i) / 999.0;
+            let m = DMat3::from_row_array(table.lookup(&query(0.0, 0.0, alpha, alpha)).unwrap().lobes[0].m);
+            assert!(m.determinant() > 0.0, "{alpha}");
+            fallbacks += u32::from(table.m.contains(&m));
+        }
+        assert!(fallbacks > 3, "the case never came up");
     }
 
     #[test]

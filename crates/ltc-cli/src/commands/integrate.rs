@@ -12,13 +12,13 @@ use crate::{json_lines, tables::Tables};
 
 /// Integrates lobes over lights: JSON lines on stdin, JSON lines on stdout.
 ///
-/// In: {"m":[9 numbers, row-major]} or {"table":NAME,"theta":…,"phi":…,"alpha_x":…,"alpha_y":…}, and a "light", seen from
-/// the shading point at the origin in the shading frame:
-/// {"type":"polygon","vertices":[[x,y,z],…],"two_sided":false}, counter-clockwise seen from its emitting side.
-/// Out: {"value":v,"precision":"f32"}, v in [0, 1] the fraction of the lobe that sees the light. A degenerate light
-/// gives 0, a bad line {"error":"…"}.
+/// In: `{"m":[9 numbers, row-major]}` or `{"table":NAME,"theta":…,"phi":…,"alpha_x":…,"alpha_y":…}`, and a `"light"`, seen
+/// from the shading point at the origin in the shading frame:
+/// `{"type":"polygon","vertices":[[x,y,z],…],"two_sided":false}`, counter-clockwise seen from its emitting side.
+/// Out: `{"value":v,"precision":"f32"}`, v in 0 to 1 the fraction of the lobe that sees the light. A degenerate light
+/// gives 0, a bad line `{"error":"…"}`.
 ///
-/// Example: echo '{"m":[1,0,0,0,1,0,0,0,1],"light":{"type":"polygon","vertices":[[0,0,1],[0,1,1],[1,0,1]]}}' | ltc integrate
+/// Example: `echo '{"m":[1,0,0,0,1,0,0,0,1],"light":{"type":"polygon","vertices":[[0,0,1],[0,1,1],[1,0,1]]}}' | ltc integrate`
 #[derive(Args)]
 pub struct Integrate {
     /// Precision of the arithmetic.

@@ -9,10 +9,10 @@ use crate::{json_lines, tables::Tables};
 
 /// Looks up lobes: JSON lines on stdin, JSON lines on stdout.
 ///
-/// In: {"theta":0.7,"phi":0.3,"alpha_x":0.4,"alpha_y":0.1}. Out: {"lobes":[{"weight":1.0,"m":[9 numbers, row-major]}],
-/// "magnitude":n,"fresnel":f}. A bad line gives {"error":"…"}.
+/// In: `{"theta":0.7,"phi":0.3,"alpha_x":0.4,"alpha_y":0.1}`. Out: `{"lobes":[{"weight":1.0,"m":[9 numbers, row-major]}],
+/// "magnitude":n,"fresnel":f}`. A bad line gives `{"error":"…"}`.
 ///
-/// Example: echo '{"theta":0.7,"phi":0.3,"alpha_x":0.4,"alpha_y":0.1}' | ltc lookup --table ggx-anisotropic
+/// Example: `echo '{"theta":0.7,"phi":0.3,"alpha_x":0.4,"alpha_y":0.1}' | ltc lookup --table ggx-anisotropic`
 #[derive(Args)]
 pub struct Lookup {
     /// NAME, NAME@VERSION or a digest.

@@ -47,14 +47,14 @@ fn polygon_scale(job: PolygonJob) -> f32 {
 
 fn polygon_facing(job: PolygonJob, scale: f32) -> f32 {
     let first = vertices[job.first_vertex].xyz / scale;
-    var facing = 0.0;
+    var area = vec3f(0.0);
     var previous = vertices[job.first_vertex + 1u].xyz / scale;
     for (var i = 2u; i < job.vertex_count; i++) {
         let vertex = vertices[job.first_vertex + i].xyz / scale;
-        facing += ltc_facing_term(first, previous, vertex);
+        area += ltc_area_term(first, previous, vertex);
         previous = vertex;
     }
-    return facing;
+    return ltc_facing(area, first);
 }
 
 fn polygon_fraction(job: PolygonJob) -> f32 {
