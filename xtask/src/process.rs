@@ -32,6 +32,8 @@ impl Running {
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(command, 0);
         let name = shown(command);
+        // Mesa's device-select layer complains on stderr where no desktop runs, and we choose the device ourselves.
+        command.env("NODEVICE_SELECT", "1");
         let child = command.stdin(Stdio::null()).spawn().with_context(|| format!("cannot start `{name}`"))?;
         Ok(Self { child, name, ended: None })
     }

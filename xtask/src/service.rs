@@ -23,7 +23,7 @@ impl Service {
     /// Starts `ltc serve` on `address` and waits until it is ready.
     pub fn start(ltc: &Path, root: &Path, address: SocketAddr) -> Result<Self> {
         let mut command = Command::new(ltc);
-        command.current_dir(root).args(["serve", "--listen", &address.to_string()]);
+        command.current_dir(root).args(["serve", "--log", "warn", "--listen", &address.to_string()]);
         let mut service =
             Self { running: Running::start(&mut command)?, address: listen::reachable(address) };
         let start = Instant::now();

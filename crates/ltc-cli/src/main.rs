@@ -1,5 +1,14 @@
 //! The command line tool `ltc`: fits, keeps, serves and uses tables of linearly transformed cosines.
 
+/// Prints to stdout; an error where `print!` would panic, as when the reader has gone.
+macro_rules! out {
+    ($($text:tt)*) => { std::io::Write::write_fmt(&mut std::io::stdout(), format_args!($($text)*))? };
+}
+/// The same with a line break.
+macro_rules! outln {
+    ($($text:tt)*) => { out!("{}\n", format_args!($($text)*)) };
+}
+
 mod commands;
 mod json_lines;
 mod progress;

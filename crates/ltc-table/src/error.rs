@@ -108,6 +108,14 @@ pub enum TableError {
         /// The name.
         name: String,
     },
+    /// A file format does not have a precision.
+    #[error("{format} files do not hold {precision}")]
+    NoSuchPrecision {
+        /// The format.
+        format: &'static str,
+        /// The precision asked for.
+        precision: &'static str,
+    },
     /// A value cannot be held in the precision asked for.
     #[error("array {array}, entry {index}: {value:e} does not fit {precision}")]
     PrecisionLoss {

@@ -40,8 +40,7 @@ pub fn write(table: &Table, precision: Precision, manifest: &str) -> Result<Vec<
         Precision::F16 => 97,  // VK_FORMAT_R16G16B16A16_SFLOAT
         Precision::F32 => 109, // VK_FORMAT_R32G32B32A32_SFLOAT
         Precision::F64 => {
-            let what = "KTX2 textures hold f16 or f32, not f64".to_owned();
-            return Err(TableError::Disagreement { what });
+            return Err(TableError::NoSuchPrecision { format: "KTX2", precision: precision.name() });
         }
     };
     let table = &table.rounded(precision)?;

@@ -43,12 +43,12 @@ impl Default for ServeConfig {
 #[non_exhaustive]
 pub enum ServeError {
     /// The address is in use, not this machine's, or no address.
-    #[error("cannot listen on {address}: {}", reason(.source))]
+    #[error("cannot listen on {address}: {}", reason(.cause))]
     Listen {
         /// The address.
         address: String,
         /// Why.
-        source: io::Error,
+        cause: io::Error,
     },
     /// Signals cannot be listened to, so the service could not be stopped gracefully.
     #[error("cannot listen to signals: {0}")]
@@ -93,7 +93,7 @@ pub async fn serve_until(
     on_ready: impl FnOnce(SocketAddr),
     mut stop: watch::Receiver<Stop>,
 ) -> Result<(), ServeError> {
-    let failed = |source| ServeError::Listen { address: config.listen.clone(), source };
+    let failed = |cause| ServeError::Listen { address: config.listen.clone(), cause };
     let listener = TcpListener::bind(&config.listen).await.map_err(failed)?;
     let address = listener.local_addr().map_err(failed)?;
     let mut connections = Connections::new(&config.limits);

@@ -72,12 +72,12 @@ impl Export {
         let (path, shape) = (self.output.display().to_string(), table.shape());
         if self.json {
             let digest = ltc_table::digest::digest(&bytes);
-            println!(
+            outln!(
                 "{}",
                 serde_json::json!({ "file": path, "bytes": bytes.len(), "shape": shape, "digest": digest })
             );
         } else {
-            println!("{path}: {} bytes, shape {shape:?}", bytes.len());
+            outln!("{path}: {} bytes, shape {shape:?}", bytes.len());
         }
         Ok(())
     }

@@ -74,9 +74,9 @@ impl Fit {
             eprintln!("{}: version {} written to {}", manifest.name, manifest.version, folder.display());
         }
         if self.json {
-            print!("{}", fitted.manifest_json()?);
+            out!("{}", fitted.manifest_json()?);
         } else {
-            println!("{}: {summary}", manifest.name);
+            outln!("{}: {summary}", manifest.name);
         }
         Ok(())
     }

@@ -113,9 +113,9 @@ impl Render {
                 "file": path, "width": width, "height": height,
                 "seconds": seconds, "shading_seconds": shading_seconds, "device": device,
             });
-            println!("{value}");
+            outln!("{value}");
         } else {
-            println!(
+            outln!(
                 "{path}: {width}×{height}, {seconds:.2} s ({shading_seconds:.2} s of shading) on {device}"
             );
         }
@@ -130,15 +130,15 @@ impl Render {
                 "file": path, "seconds": test.seconds, "reference_seconds": reference.seconds, "device": test.device,
                 "errors": serde_json::to_value(errors).context("errors")?, "amplification": amplification,
             });
-            println!("{value}");
+            outln!("{value}");
             return Ok(());
         }
-        println!("{path}: picture · reference · difference (×{amplification})");
-        println!("  {:.2} s on {}; reference {:.1} s", test.seconds, test.device, reference.seconds);
+        outln!("{path}: picture · reference · difference (×{amplification})");
+        outln!("  {:.2} s on {}; reference {:.1} s", test.seconds, test.device, reference.seconds);
         let relative =
             errors.relative_rmse.map_or_else(String::new, |r| format!(", relative RMSE {:.2} %", 100.0 * r));
         let (rmse, mean, max) = (errors.rmse, errors.mean_abs, errors.max_abs);
-        println!("  over {} pixels: RMSE {rmse:.5}, mean {mean:.5}, max {max:.4}{relative}", errors.pixels);
+        outln!("  over {} pixels: RMSE {rmse:.5}, mean {mean:.5}, max {max:.4}{relative}", errors.pixels);
         Ok(())
     }
 }

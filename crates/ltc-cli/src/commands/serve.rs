@@ -1,5 +1,7 @@
 //! `ltc serve`
 
+use std::io::IsTerminal;
+
 use anyhow::{Context, Result};
 use clap::Args;
 use ltc_service::ServeConfig;
@@ -24,17 +26,27 @@ impl Serve {
     pub fn run(self, tables: &Tables) -> Result<()> {
         let catalogue = tables.catalogue()?;
         let filter = EnvFilter::try_new(&self.log).with_context(|| format!("--log {}", self.log))?;
-        tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).init();
+        tracing_subscriber::fmt()
+            .with_env_filter(filter)
+            .with_ansi(std::io::stderr().is_terminal())
+            .with_writer(std::io::stderr)
+            .init();
         let listing: Vec<String> = catalogue.names().map(str::to_owned).collect();
         let config = ServeConfig { listen: self.listen, ..ServeConfig::default() };
         let runtime = tokio::runtime::Runtime::new().context("cannot start threads")?;
         runtime.block_on(ltc_service::serve(config, catalogue, |address| {
-            println!("serving {} tables on http://{address}", listing.len());
-            for name in &listing {
-                println!("  http://{address}/v1/tables/{name}");
-            }
+            // Nobody may be reading; the service runs all the same.
+            let _ = announce(&listing, address);
         }))?;
-        println!("stopped");
+        outln!("stopped");
         Ok(())
     }
+}
+
+fn announce(names: &[String], address: std::net::SocketAddr) -> Result<()> {
+    outln!("serving {} tables on http://{address}", names.len());
+    for name in names {
+        outln!("  http://{address}/v1/tables/{name}");
+    }
+    Ok(())
 }

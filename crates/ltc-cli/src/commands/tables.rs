@@ -27,9 +27,10 @@ impl List {
                 if !self.json {
                     let shape: Vec<String> = latest.axes.iter().map(|a| a.len.to_string()).collect();
                     let (shape, tv) = (shape.join("×"), latest.errors.standard_draw.tv_mean);
-                    println!(
+                    outln!(
                         "{name:<20} latest {:<4} {shape:<10} mean TV {tv:.4}  {}",
-                        latest.version, latest.digest
+                        latest.version,
+                        latest.digest
                     );
                 }
                 rows.push(serde_json::json!({
@@ -38,7 +39,7 @@ impl List {
             }
         }
         if self.json {
-            println!("{}", serde_json::json!({ "tables": rows }));
+            outln!("{}", serde_json::json!({ "tables": rows }));
         }
         Ok(())
     }
@@ -62,44 +63,47 @@ impl Inspect {
         let catalogue = tables.catalogue()?;
         let version = catalogue.find(&self.table)?;
         if self.json {
-            print!("{}", version.manifest_json()?);
+            out!("{}", version.manifest_json()?);
         } else {
-            describe(version);
+            describe(version)?;
         }
         Ok(())
     }
 }
 
-fn describe(version: &TableVersion) {
+fn describe(version: &TableVersion) -> Result<()> {
     let m: &Manifest = version.manifest();
-    println!("{} version {}, {} bytes, {}", m.name, m.version, m.payload_bytes, m.digest);
-    println!("made {} by {}; licence {}", m.created, m.tool, m.licence);
-    println!("BRDF {} {}", m.brdf.name, m.brdf.parameters);
+    outln!("{} version {}, {} bytes, {}", m.name, m.version, m.payload_bytes, m.digest);
+    outln!("made {} by {}; licence {}", m.created, m.tool, m.licence);
+    outln!("BRDF {} {}", m.brdf.name, m.brdf.parameters);
     for axis in &m.axes {
         let (name, [low, high]) = (axis.quantity.name(), axis.domain);
-        println!("axis {name:<7} {} nodes, {:?}, {low:.4} to {high:.4}", axis.len, axis.mapping);
+        outln!("axis {name:<7} {} nodes, {:?}, {low:.4} to {high:.4}", axis.len, axis.mapping);
     }
-    println!("floors: alpha {}, lambda {}, theta {:.4}", m.floors.alpha, m.floors.lambda, m.floors.theta_max);
-    println!("{}\n{}", m.normalisation, m.handedness);
-    print_errors(m);
+    outln!("floors: alpha {}, lambda {}, theta {:.4}", m.floors.alpha, m.floors.lambda, m.floors.theta_max);
+    outln!("{}\n{}", m.normalisation, m.handedness);
+    print_errors(m)
 }
 
 /// The errors of a manifest, for a person.
-pub fn print_errors(m: &Manifest) {
+pub fn print_errors(m: &Manifest) -> Result<()> {
     let (e, d) = (&m.errors, &m.errors.standard_draw);
-    println!(
-        "total variation on {} unseen queries ({} draw, {} samples each):",
-        d.queries, d.draw, d.samples
-    );
-    println!("  mean {:.4}  median {:.4}  p95 {:.4}  max {:.4}", d.tv_mean, d.tv_median, d.tv_p95, d.tv_max);
-    println!(
+    outln!("total variation on {} unseen queries ({} draw, {} samples each):", d.queries, d.draw, d.samples);
+    outln!("  mean {:.4}  median {:.4}  p95 {:.4}  max {:.4}", d.tv_mean, d.tv_median, d.tv_p95, d.tv_max);
+    outln!(
         "  alpha < 0.14: {:.4}  alpha >= 0.14: {:.4}",
-        d.tv_mean_alpha_below_0_14, d.tv_mean_alpha_from_0_14
+        d.tv_mean_alpha_below_0_14,
+        d.tv_mean_alpha_from_0_14
     );
-    println!("magnitude: mean error {:.1e}, max {:.1e}", e.magnitude_mean, e.magnitude_max);
-    println!("Fresnel:   mean error {:.1e}, max {:.1e}", e.fresnel_mean, e.fresnel_max);
-    println!(
+    outln!("magnitude: mean error {:.1e}, max {:.1e}", e.magnitude_mean, e.magnitude_max);
+    outln!("Fresnel:   mean error {:.1e}, max {:.1e}", e.fresnel_mean, e.fresnel_max);
+    outln!(
         "entries: TV mean {:.4} max {:.4}, leak mean {:.4} max {:.4}, condition up to {:.1e}",
-        e.cell_tv_mean, e.cell_tv_max, e.leak_mean, e.leak_max, e.condition_max
+        e.cell_tv_mean,
+        e.cell_tv_max,
+        e.leak_mean,
+        e.leak_max,
+        e.condition_max
     );
+    Ok(())
 }

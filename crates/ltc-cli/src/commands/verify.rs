@@ -29,17 +29,17 @@ impl Verify {
         if self.json {
             let ok = found.faults.is_empty();
             let (digest, errors, faults) = (&manifest.digest, &manifest.errors, &found.faults);
-            println!(
+            outln!(
                 "{}",
                 serde_json::json!({ "ok": ok, "digest": digest, "errors": errors, "faults": faults })
             );
         } else {
-            println!("{} version {}: digest {}", manifest.name, manifest.version, manifest.digest);
-            print_errors(&manifest);
+            outln!("{} version {}: digest {}", manifest.name, manifest.version, manifest.digest);
+            print_errors(&manifest)?;
         }
         if found.faults.is_empty() {
             if !self.json {
-                println!("as the manifest says");
+                outln!("as the manifest says");
             }
             return Ok(());
         }
