@@ -53,9 +53,15 @@ pub fn fit_channels(
     let rows = sample_rows(brdf, axes, settings, &points)?;
     report(observer, 2)?;
     let solve = |start: &[f64], value: fn(&Row) -> f64| tied(lattice, &least_squares(start, &rows, value));
-    let result = (solve(&magnitude, |r| r.magnitude), solve(&fresnel, |r| r.fresnel));
+    let mut magnitude = solve(&magnitude, |r| r.magnitude);
+    let mut fresnel = solve(&fresnel, |r| r.fresnel);
+    // No surface reflects more than it gets, and a Fresnel weight is at most 1: least squares alone may say otherwise.
+    for (n, f) in magnitude.iter_mut().zip(&mut fresnel) {
+        *n = n.clamp(0.0, 1.0);
+        *f = f.clamp(0.0, *n);
+    }
     report(observer, 3)?;
-    Ok(result)
+    Ok((magnitude, fresnel))
 }
 
 fn report(observer: Observer<'_>, done: usize) -> Result<(), FitError> {
@@ -136,7 +142,7 @@ fn least_squares(start: &[f64], rows: &[Row], value: fn(&Row) -> f64) -> Vec<f64
         }
         square = next;
     }
-    start.iter().zip(change).map(|(x, d)| (x + d).max(0.0)).collect()
+    start.iter().zip(change).map(|(x, d)| x + d).collect()
 }
 
 /// The values of entries that share a lobe, made equal.

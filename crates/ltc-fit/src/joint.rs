@@ -1,9 +1,9 @@
 //! The table as the unknown: all entries refined together, over queries between them.
 
 use glam::DMat3;
-use ltc_core::points::SplitMix64;
+use ltc_core::{Ltc, points::SplitMix64};
 use ltc_table::{
-    Axis, Folded, Query,
+    Axis, Folded, Precision, Query,
     lookup::{Corner, corners},
 };
 use rayon::prelude::*;
@@ -85,6 +85,7 @@ pub fn refine(
             return Err(FitError::Stopped);
         }
     }
+    unknowns.keep_exportable();
     Ok(unknowns.matrices())
 }
 
@@ -151,6 +152,22 @@ impl<'a> Unknowns<'a> {
         m
     }
 
+    /// Takes entries back towards their start until they keep det M > 0 as half floats: the thinnest lobes' columns are so
+    /// nearly parallel that rounding can turn them over.
+    fn keep_exportable(&mut self) {
+        const MOST_STEPS: usize = 60;
+        let followers = |owner: usize| self.lattice.ties.iter().filter(move |tie| tie.owner == owner);
+        for (k, &index) in self.owners.iter().enumerate() {
+            for _ in 0..MOST_STEPS {
+                let m = self.start[index] * factor(&self.delta[k]);
+                if survives_half(m) && followers(index).all(|tie| survives_half(tie.follow(m))) {
+                    break;
+                }
+                self.delta[k] = self.delta[k].map(|d| 0.93 * d);
+            }
+        }
+    }
+
     /// Adam (Kingma & Ba 2015) on the owners, each gathering the gradients of those that follow it.
     fn step(&mut self, by_entry: &[DMat3], rate: f64) {
         const DECAY_MEAN: f64 = 0.9;
@@ -176,6 +193,11 @@ impl<'a> Unknowns<'a> {
             keep_regular(&mut self.delta[k]);
         }
     }
+}
+
+fn survives_half(m: DMat3) -> bool {
+    let rounded = m.to_cols_array().map(|x| Precision::F16.round(x));
+    Ltc::<f64>::new(DMat3::from_cols_array(&rounded)).is_ok()
 }
 
 /// Whether entry `i` of a column-major 3×3 matrix lies on its diagonal.

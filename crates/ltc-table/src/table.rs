@@ -156,15 +156,21 @@ impl Table {
     fn interpolate<const N: usize>(&self, values: [f64; N]) -> (DMat3, f64, f64) {
         let mut result = (DMat3::ZERO, 0.0, 0.0);
         let mut nearest = Corner { index: 0, weight: -1.0 };
+        let (mut most_magnitude, mut most_fresnel) = (0.0_f64, 0.0_f64);
         for corner in crate::lookup::corners(&self.axes, values) {
             let Corner { index, weight } = corner;
             result.0 += self.m[index] * weight;
             result.1 += self.magnitude[index] * weight;
             result.2 += self.fresnel[index] * weight;
+            most_magnitude = most_magnitude.max(self.magnitude[index]);
+            most_fresnel = most_fresnel.max(self.fresnel[index]);
             if weight > nearest.weight {
                 nearest = corner;
             }
         }
+        // The weights sum to 1 but for rounding, which must not make a surface reflect more than it gets.
+        result.1 = result.1.min(most_magnitude);
+        result.2 = result.2.min(most_fresnel);
         // Entries with det M > 0 may still interpolate to a matrix without, between very thin lobes that lie askew.
         if Ltc::<f64>::new(result.0).is_err() {
             result.0 = self.m[nearest.index];

@@ -101,7 +101,7 @@ impl Integrate {
 }
 
 fn job(catalogue: &Catalogue, line: &str) -> Result<Job, String> {
-    let line: Line = serde_json::from_str(line).map_err(|e| e.to_string())?;
+    let line: Line = json_lines::object(line)?;
     let lobes = lobes(catalogue, &line)?;
     let Light::Polygon { vertices, two_sided } = line.light;
     Ok(Job { lobes, vertices, sides: if two_sided { Sides::Two } else { Sides::One } })

@@ -43,6 +43,6 @@ impl Lookup {
 }
 
 fn answer(table: &Table, line: &str) -> Result<ltc_table::Lookup, String> {
-    let Line { theta, phi, alpha_x, alpha_y } = serde_json::from_str(line).map_err(|e| e.to_string())?;
+    let Line { theta, phi, alpha_x, alpha_y } = json_lines::object(line)?;
     table.lookup(&Query { theta, phi, alpha_x, alpha_y }).map_err(|e| e.to_string())
 }

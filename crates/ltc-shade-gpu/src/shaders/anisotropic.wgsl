@@ -42,3 +42,14 @@ fn ltc_anisotropic_decode(texels: LtcTexels, place: LtcAnisotropicPlace) -> LtcL
     );
     return LtcLookup(unfolded, texels.g2.y, texels.g2.z);
 }
+
+fn ltc_anisotropic_nearest(place: LtcAnisotropicPlace) -> LtcAnisotropicPlace {
+    return LtcAnisotropicPlace(
+        ltc_nearest(place.theta),
+        ltc_nearest(place.phi),
+        ltc_nearest(place.alpha),
+        ltc_nearest(place.lambda),
+        place.mirror,
+        place.swap,
+    );
+}

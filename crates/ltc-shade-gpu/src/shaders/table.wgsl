@@ -76,3 +76,20 @@ fn ltc_matrix(texels: LtcTexels) -> mat3x3f {
 fn ltc_blend(a: LtcTexels, b: LtcTexels, t: f32) -> LtcTexels {
     return LtcTexels(mix(a.g0, b.g0, t), mix(a.g1, b.g1, t), mix(a.g2, b.g2, t));
 }
+
+// The nearest node to a place.
+fn ltc_nearest(place: LtcPlace) -> LtcPlace {
+    return LtcPlace(place.cell, select(0.0, 1.0, place.t > 0.5));
+}
+
+// Whether the matrix is a lobe's: det M > 0. Entries have it, but very thin lobes that lie askew to each other may
+// interpolate to a matrix without; the nearest entry answers then, as on the CPU.
+fn ltc_regular(texels: LtcTexels) -> bool {
+    let m = ltc_matrix(texels);
+    return dot(m[0], cross(m[1], m[2])) > 0.0;
+}
+
+// The magnitude and Fresnel term of `texels` with the matrix of `other`.
+fn ltc_with_matrix(texels: LtcTexels, other: LtcTexels) -> LtcTexels {
+    return LtcTexels(other.g0, other.g1, vec4f(other.g2.x, texels.g2.yzw));
+}

@@ -7,10 +7,20 @@
 
 fn lookup_isotropic(wo: vec3f, alpha: f32) -> LtcLookup {
     let place = ltc_isotropic_place(isotropic_axes, wo, alpha);
-    return ltc_isotropic_decode(ltc_fetch_isotropic(isotropic_table, place), wo);
+    var texels = ltc_fetch_isotropic(isotropic_table, place);
+    if !ltc_regular(texels) {
+        let nearest = LtcIsotropicPlace(ltc_nearest(place.theta), ltc_nearest(place.alpha));
+        texels = ltc_with_matrix(texels, ltc_fetch_isotropic(isotropic_table, nearest));
+    }
+    return ltc_isotropic_decode(texels, wo);
 }
 
 fn lookup_anisotropic(wo: vec3f, alpha_x: f32, alpha_y: f32) -> LtcLookup {
     let place = ltc_anisotropic_place(anisotropic_axes, wo, alpha_x, alpha_y);
-    return ltc_anisotropic_decode(ltc_fetch_anisotropic(anisotropic_table, anisotropic_axes, place), place);
+    var texels = ltc_fetch_anisotropic(anisotropic_table, anisotropic_axes, place);
+    if !ltc_regular(texels) {
+        let nearest = ltc_anisotropic_nearest(place);
+        texels = ltc_with_matrix(texels, ltc_fetch_anisotropic(anisotropic_table, anisotropic_axes, nearest));
+    }
+    return ltc_anisotropic_decode(texels, place);
 }

@@ -8,11 +8,20 @@
 
 fn lookup_isotropic(wo: vec3f, alpha: f32) -> LtcLookup {
     let place = ltc_isotropic_place(isotropic_axes, wo, alpha);
-    return ltc_isotropic_decode(ltc_fetch_isotropic(isotropic_table, table_filter, place), wo);
+    var texels = ltc_fetch_isotropic(isotropic_table, table_filter, place);
+    if !ltc_regular(texels) {
+        let nearest = LtcIsotropicPlace(ltc_nearest(place.theta), ltc_nearest(place.alpha));
+        texels = ltc_with_matrix(texels, ltc_fetch_isotropic(isotropic_table, table_filter, nearest));
+    }
+    return ltc_isotropic_decode(texels, wo);
 }
 
 fn lookup_anisotropic(wo: vec3f, alpha_x: f32, alpha_y: f32) -> LtcLookup {
     let place = ltc_anisotropic_place(anisotropic_axes, wo, alpha_x, alpha_y);
-    let texels = ltc_fetch_anisotropic(anisotropic_table, table_filter, anisotropic_axes, place);
+    var texels = ltc_fetch_anisotropic(anisotropic_table, table_filter, anisotropic_axes, place);
+    if !ltc_regular(texels) {
+        let nearest = ltc_anisotropic_nearest(place);
+        texels = ltc_with_matrix(texels, ltc_fetch_anisotropic(anisotropic_table, table_filter, anisotropic_axes, nearest));
+    }
     return ltc_anisotropic_decode(texels, place);
 }

@@ -1,0 +1,13 @@
+//! The binary `ltc`, run as a user runs it.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
+
+mod export;
+mod fit;
+mod help;
+mod lines;
+mod render;
+#[cfg(unix)]
+mod serve;
+mod support;
+mod tables;
