@@ -61,7 +61,8 @@ fn bad_lookups_are_told_on_their_line_and_the_run_goes_on() {
         (r#"{"theta":0.7,"alpha_x":0.4,"alpha_y":0.1}"#, "must be equal"),
         (r#"{"theta":0.7,"alpha_x":0.4}"#, "alpha_y"),
         (r#"{"theta":0.7,"alpha_x":0.4,"alpha_y":0.4,"alpha_z":1}"#, "alpha_z"),
-        ("[]", "invalid"),
+        ("[]", "must be a JSON object"),
+        ("[0.7,0,0.4,0.4]", "must be a JSON object"),
     ] {
         let answers = lookup("ggx-isotropic", &format!("{good}\n{bad}\n{good}"));
         assert_eq!(answers.len(), 3, "{bad}");
