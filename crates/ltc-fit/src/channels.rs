@@ -1,13 +1,10 @@
 //! Magnitude and Fresnel: by quadrature at the entries, then so that what is interpolated is right between them.
 
 use ltc_core::points::SplitMix64;
-use ltc_table::{
-    Axis,
-    lookup::{Corner, corners},
-};
+use ltc_table::{Axis, lookup::Corner};
 use rayon::prelude::*;
 
-use crate::{Brdf, DiskPoints, FitError, Lattice, Lobe, Observer, Progress, draw};
+use crate::{Brdf, DiskPoints, FitError, Lattice, Lobe, Observer, Progress, draw, joint::query_corners};
 
 /// Settings of [`fit_channels`].
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -87,13 +84,8 @@ fn sample_rows(
     queries
         .par_iter()
         .map_init(Lobe::default, |lobe, query| {
-            let q = query.fold()?;
             brdf.sample_lobe(crate::direction(query.theta, query.phi), query.validate()?, points, lobe);
-            let corners = if isotropic {
-                corners(axes, [q.theta, q.alpha]).collect()
-            } else {
-                corners(axes, [q.theta, q.phi, q.alpha, q.lambda]).collect()
-            };
+            let corners = query_corners(axes, &query.fold()?);
             Ok(Row { corners, magnitude: lobe.magnitude, fresnel: lobe.fresnel })
         })
         .collect()

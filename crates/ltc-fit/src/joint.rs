@@ -115,14 +115,21 @@ pub(crate) fn interpolate(m: &[DMat3], corners: &[Corner]) -> DMat3 {
 
 fn locate(axes: &[Axis], query: &Query) -> Result<Place, FitError> {
     let mut folded = query.fold()?;
-    let corners = if axes.len() == 2 {
+    if axes.len() == 2 {
         // An isotropic table holds the lobe of φ = 0 and turns it.
         folded.phi = 0.0;
-        corners(axes, [folded.theta, folded.alpha]).collect()
+    }
+    Ok(Place { query: folded, corners: query_corners(axes, &folded) })
+}
+
+/// The entries around a query, and their weights in its lookup.
+pub(crate) fn query_corners(axes: &[Axis], query: &Folded) -> Vec<Corner> {
+    let Folded { theta, phi, alpha, lambda, .. } = *query;
+    if axes.len() == 2 {
+        corners(axes, [theta, alpha]).collect()
     } else {
-        corners(axes, [folded.theta, folded.phi, folded.alpha, folded.lambda]).collect()
-    };
-    Ok(Place { query: folded, corners })
+        corners(axes, [theta, phi, alpha, lambda]).collect()
+    }
 }
 
 /// The owners' `Δ` and what Adam remembers of them.

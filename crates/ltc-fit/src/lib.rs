@@ -29,7 +29,7 @@ pub use bfgs::Stop;
 pub use entry::{EntryFit, fit_entry, refine_entry};
 pub use error::FitError;
 pub use fit::{Verification, fit, publish, verify};
-pub use lobe::{Brdf, GgxFamily, Lobe, ggx_density};
+pub use lobe::{Brdf, GgxFamily, Lobe};
 pub use points::DiskPoints;
 pub use progress::{Observer, Progress, silent};
 pub use spec::FitSpec;

@@ -1,7 +1,7 @@
 //! Samples of the lobe that an LTC is fitted to.
 
 use glam::DVec3;
-use ltc_core::{Alpha, Ggx, Real, Vector, schlick_weight};
+use ltc_core::{Alpha, Real, Vector, schlick_weight};
 
 use crate::DiskPoints;
 
@@ -139,14 +139,10 @@ fn lambda_cos(w: DVec3, alpha: Alpha) -> f64 {
     0.5 * s2 / (w.z + (w.z * w.z + s2).sqrt()).max(f64::MIN_POSITIVE)
 }
 
-/// The density of the normalised lobe at `wi`, for tests and pictures: `ρ cos / magnitude`.
-pub fn ggx_density(wo: DVec3, alpha: Alpha, magnitude: f64, wi: DVec3) -> f64 {
-    Ggx::<f64>::new(alpha).eval_cos(wo, wi) / magnitude
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ltc_core::Ggx;
 
     #[test]
     fn samples_and_densities_are_those_of_core() {

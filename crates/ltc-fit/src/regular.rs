@@ -22,7 +22,7 @@ const POINTS: usize = 8192;
 /// Entries with det M > 0 can interpolate to a matrix without: between lobes that are thin and lie askew. Queries of the
 /// draw come by the corners where it happens too seldom to see it.
 pub fn push_apart(axes: &[Axis], m: &[DMat3], seed: u64, weight: f64, by_entry: &mut [DMat3]) {
-    for corners in find_flat(axes, m, POINTS, MIN_VOLUME, seed) {
+    for corners in find_flat(axes, m, seed) {
         let now = interpolate(m, &corners);
         let push = volume_gradient(now) * (weight * STIFFNESS * (volume(now) - MIN_VOLUME));
         for corner in corners {
@@ -31,16 +31,16 @@ pub fn push_apart(axes: &[Axis], m: &[DMat3], seed: u64, weight: f64, by_entry: 
     }
 }
 
-/// The points, of so many random ones, whose interpolated matrix spans less than `least`.
-fn find_flat(axes: &[Axis], m: &[DMat3], points: usize, least: f64, seed: u64) -> Vec<Vec<Corner>> {
+/// Those of [`POINTS`] random points whose interpolated matrix spans less than [`MIN_VOLUME`].
+fn find_flat(axes: &[Axis], m: &[DMat3], seed: u64) -> Vec<Vec<Corner>> {
     const CHUNK: usize = 512;
-    let chunks: Vec<Vec<Vec<Corner>>> = (0..points.div_ceil(CHUNK))
+    let chunks: Vec<Vec<Vec<Corner>>> = (0..POINTS.div_ceil(CHUNK))
         .into_par_iter()
         .map(|chunk| {
             let mut rng = SplitMix64::new(seed ^ (chunk as u64).wrapping_mul(0x9E37_79B9));
             (0..CHUNK)
                 .map(|_| random_corners(axes, &mut rng))
-                .filter(|corners| volume(interpolate(m, corners)) < least)
+                .filter(|corners| volume(interpolate(m, corners)) < MIN_VOLUME)
                 .collect()
         })
         .collect();
