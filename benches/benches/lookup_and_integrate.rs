@@ -4,7 +4,7 @@
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use ltc_core::{Ltc, Matrix, Polygon, Real, Sides, Vector, points::SplitMix64};
+use ltc_core::{Light as _, Ltc, Matrix, Polygon, Real, Sides, Vector, points::SplitMix64};
 use ltc_fit::draw;
 use ltc_table::{Query, Table};
 

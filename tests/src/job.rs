@@ -1,7 +1,7 @@
 //! One polygon under one lobe, in the numbers that every back end can read.
 
 use glam::{DMat3, DVec3, Mat3, Vec3};
-use ltc_core::{InputError, Ltc, Matrix, Polygon, Sides};
+use ltc_core::{InputError, Light as _, Ltc, Matrix, Polygon, Sides};
 
 /// A light seen from the shading point, and the lobe it lights. Rounded to `f32` once, here: back ends differ by their
 /// arithmetic alone, not by their inputs.

@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DVec3};
 use ltc_core::points::{SplitMix64, r2};
-use ltc_core::{Alpha, Ggx, Ltc, Matrix, Polygon, Sides};
+use ltc_core::{Alpha, Ggx, Light as _, Ltc, Matrix, Polygon, Sides};
 use ltc_fit::{Brdf, DiskPoints, GgxFamily, Lobe, draw, total_variation};
 use ltc_reference::{
     AboveHorizon, LtcLobe, PolygonOptions, Tolerance, directional_albedo, ggx_total_variation,

@@ -15,7 +15,7 @@
 //!
 //! # Example
 //! ```
-//! use ltc_core::{Ltc, Matrix, Polygon, Sides};
+//! use ltc_core::{Light, Ltc, Matrix, Polygon, Sides};
 //! use glam::{DMat3, DVec3};
 //!
 //! let ltc = Ltc::<f64>::new(DMat3::from_row_array([0.3, 0.0, 0.4, 0.0, 0.2, 0.0, -0.1, 0.0, 0.9]))?;
@@ -30,9 +30,9 @@ mod error;
 mod frame;
 mod fresnel;
 mod ggx;
+mod light;
 mod ltc;
 pub mod points;
-mod polygon;
 mod real;
 mod roughness;
 #[cfg(test)]
@@ -42,7 +42,7 @@ pub use error::{InputError, check_range};
 pub use frame::ShadingFrame;
 pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
+pub use light::{Horizon, Light, LightSample, Polygon, SampleLight, Sides};
 pub use ltc::Ltc;
-pub use polygon::{Polygon, Sides};
 pub use real::{Matrix, Real, Vector};
 pub use roughness::{ALPHA_MIN, Alpha, PerceptualRoughness};

@@ -1,7 +1,7 @@
 //! LTC shading on the CPU, in `f64`.
 
 use glam::DVec3;
-use ltc_core::{Ltc, Polygon, Sides, reflectance};
+use ltc_core::{Light as _, Ltc, Polygon, Sides, reflectance};
 use ltc_table::{Lookup, Query};
 use rayon::prelude::*;
 

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use glam::{DMat3, DVec3};
-use ltc_core::{Ltc, Matrix, Polygon, Real, Sides, Vector};
+use ltc_core::{Light as _, Ltc, Matrix, Polygon, Real, Sides, Vector};
 use ltc_shade_gpu::{Gpu, GpuOptions, PolygonJob, Polygons};
 use ltc_table::{Catalogue, Query};
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! Polygons under lobes: GPU against `ltc_core` in both precisions.
 
 use glam::{DMat3, DVec3, Mat3, Vec3};
-use ltc_core::{Ltc, Matrix, Polygon, Sides};
+use ltc_core::{Light as _, Ltc, Matrix, Polygon, Sides};
 use ltc_shade_gpu::{Filtering, GpuError, PolygonJob, Polygons};
 use ltc_table::Mapping;
 

@@ -1,7 +1,7 @@
 //! Deferred shading: GPU against `ltc_core` and `ltc_table` in f64.
 
 use glam::{DVec3, Vec3};
-use ltc_core::{Ltc, Matrix, Polygon, ShadingFrame, Sides, reflectance};
+use ltc_core::{Light as _, Ltc, Matrix, Polygon, ShadingFrame, Sides, reflectance};
 use ltc_shade_gpu::{Filtering, Gpu, GpuError, RectLight, Shader, SurfacePoint, TableTextures, Tables};
 use ltc_table::{Mapping, Query, Table};
 

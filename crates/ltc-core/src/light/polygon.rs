@@ -1,15 +1,8 @@
 //! Polygonal lights: the fraction of a lobe that sees the polygon, in closed form.
 
-use crate::{InputError, Ltc, Matrix, Real, Vector};
-
-/// Which sides of a flat light emit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sides {
-    /// Only the side from which the vertices run counter-clockwise.
-    One,
-    /// Both.
-    Two,
-}
+use super::boundary::{BoundarySum, clip_to_surface, fraction_from_boundary};
+use super::{Horizon, Light, Sides};
+use crate::{InputError, Ltc, Real, Vector};
 
 /// A flat polygonal light, its vertices given relative to the shading point in the shading frame.
 ///
@@ -34,31 +27,6 @@ impl<'a, R: Real> Polygon<'a, R> {
         Ok(Self { vertices, sides })
     }
 
-    /// The fraction of `ltc` that sees the light, in [0, 1]: `∫ D(ω) dω` over the light's directions.
-    ///
-    /// Exact (2016 paper, eq. 3 and 11) and free of leaks: what lies below the surface's horizon (z ≤ 0 in the shading
-    /// frame) is cut away before the vertices go to cosine space, what lies below the horizon there afterwards. Zero
-    /// for a degenerate light, for a shading point in the light's plane, and for one behind a one-sided light.
-    pub fn integrate(&self, ltc: &Ltc<R>) -> R {
-        let facing = self.facing();
-        let visible = match self.sides {
-            Sides::One => facing > R::ZERO,
-            Sides::Two => facing != R::ZERO,
-        };
-        if !visible {
-            return R::ZERO;
-        }
-        let orientation = if facing > R::ZERO { -R::ONE } else { R::ONE };
-        let mut sum = BoundarySum::new(ltc.cosine_from_target());
-        clip_to_surface::<R>(self.vertices, |v| sum.push(v));
-        fraction_from_boundary(orientation * sum.finish())
-    }
-
-    /// The fraction of a Lambertian lobe that sees the light, i.e. its form factor, in [0, 1].
-    pub fn irradiance(&self) -> R {
-        self.integrate(&Ltc::cosine())
-    }
-
     /// Proportional to the distance of the shading point in front of the light's plane (negative: behind it), and exactly
     /// 0 where rounding decides the side: within 8 ε of the farthest vertex's distance.
     ///
@@ -79,103 +47,34 @@ impl<'a, R: Real> Polygon<'a, R> {
     }
 }
 
-/// Sutherland–Hodgman against z ≥ 0, one vertex out at a time.
-fn clip_to_surface<R: Real>(vertices: &[R::Vec3], mut emit: impl FnMut(R::Vec3)) {
-    let Some(&last) = vertices.last() else { return };
-    let mut p = last;
-    for &q in vertices {
-        let (p_in, q_in) = (p.z() >= R::ZERO, q.z() >= R::ZERO);
-        if p_in != q_in {
-            emit(horizon_point::<R>(p, q));
+impl<R: Real> Light<R> for Polygon<'_, R> {
+    /// Exact (2016 paper, eq. 3 and 11) and free of leaks: what lies below the surface's horizon (z ≤ 0 in the shading
+    /// frame) is cut away before the vertices go to cosine space, what lies below the horizon there afterwards. Zero
+    /// for a degenerate light, for a shading point in the light's plane, and for one behind a one-sided light.
+    fn integrate_within(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
+        let facing = self.facing();
+        let visible = match self.sides {
+            Sides::One => facing > R::ZERO,
+            Sides::Two => facing != R::ZERO,
+        };
+        if !visible {
+            return R::ZERO;
         }
-        if q_in {
-            emit(q);
+        let orientation = if facing > R::ZERO { -R::ONE } else { R::ONE };
+        let mut sum = BoundarySum::new(ltc.cosine_from_target(), horizon);
+        if horizon.surface {
+            clip_to_surface::<R>(self.vertices, |v| sum.push(v));
+        } else {
+            self.vertices.iter().for_each(|v| sum.push(*v));
         }
-        p = q;
+        fraction_from_boundary(orientation * sum.finish())
     }
-}
-
-/// Where the segment from `p` to `q`, whose ends lie on different sides of z = 0, crosses it.
-fn horizon_point<R: Real>(p: R::Vec3, q: R::Vec3) -> R::Vec3 {
-    let t = p.z() / (p.z() - q.z());
-    let x = p + (q - p) * t;
-    R::Vec3::new(x.x(), x.y(), R::ZERO)
-}
-
-/// Accumulates `∮ sin²θ dφ` in cosine space, where θ > π/2 counts as π/2, along the boundary of a polygon.
-///
-/// By Stokes' theorem this is `2 ∫ max(0, cos θ) dω` over the inside, less 2π when the nadir is inside, up to the sign
-/// of the winding. Edges are independent of each other, so nothing need be closed along the horizon.
-struct BoundarySum<R: Real> {
-    cosine_from_target: R::Mat3,
-    ends: Option<(R::Vec3, R::Vec3)>,
-    sum: R,
-}
-
-impl<R: Real> BoundarySum<R> {
-    fn new(cosine_from_target: R::Mat3) -> Self {
-        Self { cosine_from_target, ends: None, sum: R::ZERO }
-    }
-
-    fn push(&mut self, vertex: R::Vec3) {
-        // A vertex at the shading point has no direction: leaving it out is the limit of a corner that is cut off.
-        let Some(v) = self.cosine_from_target.apply(vertex).try_unit() else { return };
-        self.ends = Some(match self.ends {
-            None => (v, v),
-            Some((first, previous)) => {
-                self.sum += edge(previous, v);
-                (first, v)
-            }
-        });
-    }
-
-    fn finish(self) -> R {
-        self.ends.map_or(R::ZERO, |(first, last)| self.sum + edge(last, first))
-    }
-}
-
-/// `∫ sin²θ dφ` along the great circle from `a` to `b`, its part below the horizon dropped onto the horizon.
-fn edge<R: Real>(a: R::Vec3, b: R::Vec3) -> R {
-    match (a.z() >= R::ZERO, b.z() >= R::ZERO) {
-        (true, true) => edge_above::<R>(a, b),
-        (false, false) => azimuth::<R>(a, b),
-        (true, false) => {
-            let x = horizon_point::<R>(a, b);
-            edge_above::<R>(a, x) + azimuth::<R>(x, b)
-        }
-        (false, true) => {
-            let x = horizon_point::<R>(a, b);
-            azimuth::<R>(a, x) + edge_above::<R>(x, b)
-        }
-    }
-}
-
-/// `∫ sin²θ dφ = angle(a, b) · (a×b).z / |a×b|` (2016 paper, eq. 11, with the angle by atan2, which neither cancels for
-/// short edges nor for edges near π). Equal and antipodal ends, which span no plane, give 0.
-fn edge_above<R: Real>(a: R::Vec3, b: R::Vec3) -> R {
-    let normal = a.cross(b);
-    let sine = normal.length();
-    if sine <= R::TINY { R::ZERO } else { sine.atan2(a.dot(b)) * (normal.z() / sine) }
-}
-
-/// Azimuth from `a` to `b`, in (−π, π].
-fn azimuth<R: Real>(a: R::Vec3, b: R::Vec3) -> R {
-    (a.x() * b.y() - a.y() * b.x()).atan2(a.x() * b.x() + a.y() * b.y())
-}
-
-/// The integral over the inside, as a fraction, from the boundary sum of a polygon that winds positively.
-///
-/// A flat polygon with the nadir inside covers at most half of the cosine, so its sum over 2π is in [−1, −½]; without
-/// it, it is in [0, 1]. Which of both is never in doubt, however much either is rounded.
-fn fraction_from_boundary<R: Real>(sum: R) -> R {
-    let turns = sum / (R::of(2.0) * R::PI);
-    let wrapped = if turns < R::of(-0.25) { turns + R::ONE } else { turns };
-    wrapped.clamped(R::ZERO, R::ONE)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Matrix as _;
     use crate::testing::{r2, random};
     use glam::{DMat3, DVec3, Vec3};
 
