@@ -11,6 +11,7 @@ macro_rules! outln {
 
 mod commands;
 mod json_lines;
+mod light_json;
 mod progress;
 mod tables;
 

@@ -43,7 +43,7 @@ pub use error::{InputError, check_range};
 pub use frame::ShadingFrame;
 pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
-pub use light::{
+pub use light::{AnyLight, 
     Horizon, Light, LightSample, Polygon, SampleLight, Sides, TextureFetch, TextureFrame, TexturedPolygon,
 };
 pub use ltc::Ltc;

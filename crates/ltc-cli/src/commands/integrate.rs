@@ -2,19 +2,24 @@
 
 use anyhow::Result;
 use clap::{Args, ValueEnum};
-use glam::{DMat3, DVec3};
-use ltc_core::{Light as _, Ltc, Matrix, Polygon, Real, Sides, Vector};
+use glam::DMat3;
+use ltc_core::{AnyLight, Horizon, Ltc, Matrix, Real};
 use ltc_shade_gpu::{Gpu, GpuOptions, PolygonJob, Polygons};
 use ltc_table::{Catalogue, Query};
 use serde::{Deserialize, Serialize};
 
-use crate::{json_lines, tables::Tables};
+use crate::{json_lines, light_json::LightJson, tables::Tables};
 
 /// Integrates lobes over lights: JSON lines on stdin, JSON lines on stdout.
 ///
 /// In: `{"m":[9 numbers, row-major]}` or `{"table":NAME,"theta":…,"phi":…,"alpha_x":…,"alpha_y":…}`, and a `"light"`, seen
-/// from the shading point at the origin in the shading frame:
-/// `{"type":"polygon","vertices":[[x,y,z],…],"two_sided":false}`, counter-clockwise seen from its emitting side.
+/// from the shading point at the origin in the shading frame, one of
+/// `{"type":"polygon","vertices":[[x,y,z],…],"two_sided":false}`, counter-clockwise seen from its emitting side;
+/// `{"type":"line","p0":…,"p1":…,"radius":r}`, a thin tube, approximately;
+/// `{"type":"strip","p0":…,"p1":…,"width":w,"normal":[…],"two_sided":false}`, a thin rectangle, approximately;
+/// `{"type":"cylinder","p0":…,"p1":…,"radius":r,"caps":false}`;
+/// `{"type":"disk","center":…,"normal":…,"radius":r,"two_sided":false}`;
+/// `{"type":"ellipse","center":…,"axis_u":…,"axis_v":…,"two_sided":false}`; `{"type":"sphere","center":…,"radius":r}`.
 /// Out: `{"value":v,"precision":"f32"}`, v in 0 to 1 the fraction of the lobe that sees the light. A degenerate light
 /// gives 0, a bad line `{"error":"…"}`.
 ///
@@ -54,17 +59,7 @@ struct Line {
     phi: Option<f64>,
     alpha_x: Option<f64>,
     alpha_y: Option<f64>,
-    light: Light,
-}
-
-#[derive(Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
-enum Light {
-    Polygon {
-        vertices: Vec<[f64; 3]>,
-        #[serde(default)]
-        two_sided: bool,
-    },
+    light: LightJson,
 }
 
 #[derive(Serialize)]
@@ -73,11 +68,10 @@ struct Answer {
     precision: &'static str,
 }
 
-/// A line understood: lobes with their weights, and a polygon.
+/// A line understood: lobes with their weights, and a light.
 struct Job {
     lobes: Vec<(f64, [f64; 9])>,
-    vertices: Vec<[f64; 3]>,
-    sides: Sides,
+    light: AnyLight,
 }
 
 impl Integrate {
@@ -103,8 +97,7 @@ impl Integrate {
 fn job(catalogue: &Catalogue, line: &str) -> Result<Job, String> {
     let line: Line = json_lines::object(line)?;
     let lobes = lobes(catalogue, &line)?;
-    let Light::Polygon { vertices, two_sided } = line.light;
-    Ok(Job { lobes, vertices, sides: if two_sided { Sides::Two } else { Sides::One } })
+    Ok(Job { lobes, light: line.light.into() })
 }
 
 fn lobes(catalogue: &Catalogue, line: &Line) -> Result<Vec<(f64, [f64; 9])>, String> {
@@ -131,26 +124,27 @@ fn lobes(catalogue: &Catalogue, line: &Line) -> Result<Vec<(f64, [f64; 9])>, Str
 }
 
 fn on_cpu<R: Real>(job: &Job) -> Result<Answer, String> {
-    let vertices: Vec<R::Vec3> =
-        job.vertices.iter().map(|[x, y, z]| R::Vec3::new(R::of(*x), R::of(*y), R::of(*z))).collect();
-    let polygon = Polygon::<R>::new(&vertices, job.sides).map_err(|e| e.to_string())?;
     let mut value = 0.0;
     for (weight, m) in &job.lobes {
         let ltc = Ltc::<R>::new(R::Mat3::from_row_array(m.map(R::of))).map_err(|e| e.to_string())?;
-        value += weight * polygon.integrate(&ltc).to_f64();
+        let fraction = job.light.integrate(&ltc, Horizon::BOTH).map_err(|e| e.to_string())?;
+        value += weight * fraction.to_f64();
     }
     Ok(Answer { value, precision: if size_of::<R>() == 4 { "f32" } else { "f64" } })
 }
 
 fn on_gpu(gpu: &Gpu, polygons: &Polygons, job: &Job) -> Result<Answer, String> {
-    // What f64 refuses, NaN and degenerate matrices, is refused in the same words here.
-    let exact: Vec<DVec3> = job.vertices.iter().map(|v| DVec3::from_array(*v)).collect();
-    Polygon::<f64>::new(&exact, job.sides).map_err(|e| e.to_string())?;
-    let vertices: Vec<[f32; 3]> = job.vertices.iter().map(|v| v.map(|x| x as f32)).collect();
+    let AnyLight::Polygon { vertices, sides } = &job.light else {
+        let name = job.light.name();
+        return Err(format!("--backend gpu has polygons alone, no {name} yet; --backend cpu has all"));
+    };
+    let vertices: Vec<[f32; 3]> = vertices.iter().map(|v| v.map(|x| x as f32)).collect();
     let mut value = 0.0;
     for (weight, m) in &job.lobes {
-        Ltc::<f64>::new(DMat3::from_row_array(*m)).map_err(|e| e.to_string())?;
-        let job = PolygonJob { m: m.map(|x| x as f32), vertices: &vertices, sides: job.sides };
+        // What f64 refuses, NaN and degenerate matrices, is refused in the same words here.
+        let exact = Ltc::<f64>::new(DMat3::from_row_array(*m)).map_err(|e| e.to_string())?;
+        job.light.integrate(&exact, Horizon::BOTH).map_err(|e| e.to_string())?;
+        let job = PolygonJob { m: m.map(|x| x as f32), vertices: &vertices, sides: *sides };
         let fraction = polygons.integrate(gpu, &[job]).map_err(|e| e.to_string())?;
         value += weight * f64::from(fraction[0]);
     }

@@ -1,11 +1,13 @@
 //! Lights, as a shading point sees them: each file a shape, each shape a closed form.
 
+mod any;
 mod boundary;
 mod horizon;
 mod polygon;
 mod sample;
 mod textured;
 
+pub use any::AnyLight;
 pub use horizon::Horizon;
 pub use polygon::Polygon;
 pub use sample::{LightSample, SampleLight};
