@@ -11,7 +11,6 @@ macro_rules! outln {
 
 mod commands;
 mod json_lines;
-mod light_json;
 mod progress;
 mod tables;
 

@@ -2,13 +2,11 @@
 
 use anyhow::Result;
 use clap::{Args, ValueEnum};
-use glam::DMat3;
-use ltc_core::{AnyLight, Horizon, Ltc, Matrix, Real};
+use ltc_core::AnyLight;
+use ltc_lines::{Answer, Integration};
 use ltc_shade_gpu::{Gpu, GpuOptions, PolygonJob, Polygons};
-use ltc_table::{Catalogue, Query};
-use serde::{Deserialize, Serialize};
 
-use crate::{json_lines, light_json::LightJson, tables::Tables};
+use crate::{json_lines, tables::Tables};
 
 /// Integrates lobes over lights: JSON lines on stdin, JSON lines on stdout.
 ///
@@ -49,31 +47,6 @@ enum Backend {
     Gpu,
 }
 
-/// One line of input.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Line {
-    m: Option<[f64; 9]>,
-    table: Option<String>,
-    theta: Option<f64>,
-    phi: Option<f64>,
-    alpha_x: Option<f64>,
-    alpha_y: Option<f64>,
-    light: LightJson,
-}
-
-#[derive(Serialize)]
-struct Answer {
-    value: f64,
-    precision: &'static str,
-}
-
-/// A line understood: lobes with their weights, and a light.
-struct Job {
-    lobes: Vec<(f64, [f64; 9])>,
-    light: AnyLight,
-}
-
 impl Integrate {
     pub fn run(self, tables: &Tables) -> Result<()> {
         let catalogue = tables.catalogue()?;
@@ -84,66 +57,25 @@ impl Integrate {
         if self.backend == Backend::Gpu {
             let gpu = Gpu::new(GpuOptions::default())?;
             let polygons = Polygons::new(&gpu)?;
-            return json_lines::run(|line| on_gpu(&gpu, &polygons, &job(&catalogue, line)?));
+            return json_lines::run(|line| on_gpu(&gpu, &polygons, &Integration::parse(&catalogue, line)?));
         }
-        let evaluate = match self.precision {
-            Precision::F32 => on_cpu::<f32>,
-            Precision::F64 => on_cpu::<f64>,
-        };
-        json_lines::run(|line| evaluate(&job(&catalogue, line)?))
-    }
-}
-
-fn job(catalogue: &Catalogue, line: &str) -> Result<Job, String> {
-    let line: Line = json_lines::object(line)?;
-    let lobes = lobes(catalogue, &line)?;
-    Ok(Job { lobes, light: line.light.into() })
-}
-
-fn lobes(catalogue: &Catalogue, line: &Line) -> Result<Vec<(f64, [f64; 9])>, String> {
-    match (line, &line.m, &line.table) {
-        (Line { theta: None, phi: None, alpha_x: None, alpha_y: None, .. }, Some(m), None) => {
-            Ok(vec![(1.0, *m)])
-        }
-        (
-            Line { theta: Some(theta), phi, alpha_x: Some(alpha_x), alpha_y: Some(alpha_y), .. },
-            None,
-            Some(table),
-        ) => {
-            let table = catalogue.find(table).map_err(|e| e.to_string())?.table();
-            let phi = phi.unwrap_or(0.0);
-            let query = Query { theta: *theta, phi, alpha_x: *alpha_x, alpha_y: *alpha_y };
-            let lookup = table.lookup(&query).map_err(|e| e.to_string())?;
-            Ok(lookup.lobes.into_iter().map(|lobe| (lobe.weight, lobe.m)).collect())
-        }
-        _ => {
-            Err("give either \"m\", or \"table\" with \"theta\", \"phi\", \"alpha_x\" and \"alpha_y\""
-                .to_owned())
+        match self.precision {
+            Precision::F32 => json_lines::run(|line| Integration::parse(&catalogue, line)?.on_cpu::<f32>()),
+            Precision::F64 => json_lines::run(|line| Integration::parse(&catalogue, line)?.on_cpu::<f64>()),
         }
     }
 }
 
-fn on_cpu<R: Real>(job: &Job) -> Result<Answer, String> {
-    let mut value = 0.0;
-    for (weight, m) in &job.lobes {
-        let ltc = Ltc::<R>::new(R::Mat3::from_row_array(m.map(R::of))).map_err(|e| e.to_string())?;
-        let fraction = job.light.integrate(&ltc, Horizon::BOTH).map_err(|e| e.to_string())?;
-        value += weight * fraction.to_f64();
-    }
-    Ok(Answer { value, precision: if size_of::<R>() == 4 { "f32" } else { "f64" } })
-}
-
-fn on_gpu(gpu: &Gpu, polygons: &Polygons, job: &Job) -> Result<Answer, String> {
+fn on_gpu(gpu: &Gpu, polygons: &Polygons, job: &Integration) -> Result<Answer, String> {
     let AnyLight::Polygon { vertices, sides } = &job.light else {
         let name = job.light.name();
         return Err(format!("--backend gpu has polygons alone, no {name} yet; --backend cpu has all"));
     };
+    // What f64 refuses, NaN and degenerate matrices, is refused in the same words here.
+    job.on_cpu::<f64>()?;
     let vertices: Vec<[f32; 3]> = vertices.iter().map(|v| v.map(|x| x as f32)).collect();
     let mut value = 0.0;
     for (weight, m) in &job.lobes {
-        // What f64 refuses, NaN and degenerate matrices, is refused in the same words here.
-        let exact = Ltc::<f64>::new(DMat3::from_row_array(*m)).map_err(|e| e.to_string())?;
-        job.light.integrate(&exact, Horizon::BOTH).map_err(|e| e.to_string())?;
         let job = PolygonJob { m: m.map(|x| x as f32), vertices: &vertices, sides: *sides };
         let fraction = polygons.integrate(gpu, &[job]).map_err(|e| e.to_string())?;
         value += weight * f64::from(fraction[0]);

@@ -1,12 +1,13 @@
-//! Lights as `ltc integrate` reads them.
+//! Lights as lines of `ltc integrate` have them.
 
 use ltc_core::{AnyLight, Sides};
 use serde::Deserialize;
 
 /// A light, seen from the shading point at the origin in the shading frame.
-#[derive(Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
-pub enum LightJson {
+#[expect(missing_docs, reason = "the fields are those of `AnyLight`")]
+pub enum LightLine {
     Polygon {
         vertices: Vec<[f64; 3]>,
         #[serde(default)]
@@ -52,25 +53,25 @@ pub enum LightJson {
     },
 }
 
-impl From<LightJson> for AnyLight {
-    fn from(light: LightJson) -> Self {
+impl From<LightLine> for AnyLight {
+    fn from(light: LightLine) -> Self {
         let sides = |two_sided| if two_sided { Sides::Two } else { Sides::One };
         match light {
-            LightJson::Polygon { vertices, two_sided } => {
+            LightLine::Polygon { vertices, two_sided } => {
                 Self::Polygon { vertices, sides: sides(two_sided) }
             }
-            LightJson::Line { p0, p1, radius } => Self::Line { p0, p1, radius },
-            LightJson::Strip { p0, p1, width, normal, two_sided } => {
+            LightLine::Line { p0, p1, radius } => Self::Line { p0, p1, radius },
+            LightLine::Strip { p0, p1, width, normal, two_sided } => {
                 Self::Strip { p0, p1, width, normal, sides: sides(two_sided) }
             }
-            LightJson::Cylinder { p0, p1, radius, caps } => Self::Cylinder { p0, p1, radius, caps },
-            LightJson::Disk { center, normal, radius, two_sided } => {
+            LightLine::Cylinder { p0, p1, radius, caps } => Self::Cylinder { p0, p1, radius, caps },
+            LightLine::Disk { center, normal, radius, two_sided } => {
                 Self::Disk { center, normal, radius, sides: sides(two_sided) }
             }
-            LightJson::Ellipse { center, axis_u, axis_v, two_sided } => {
+            LightLine::Ellipse { center, axis_u, axis_v, two_sided } => {
                 Self::Ellipse { center, axis_u, axis_v, sides: sides(two_sided) }
             }
-            LightJson::Sphere { center, radius } => Self::Sphere { center, radius },
+            LightLine::Sphere { center, radius } => Self::Sphere { center, radius },
         }
     }
 }
