@@ -23,6 +23,22 @@ pub enum FitError {
         /// The names there are.
         known: String,
     },
+    /// The BRDF gave something that is no BRDF.
+    #[error("BRDF \"{name}\": {what} is {value}, at theta {theta}, alpha {alpha_x}, {alpha_y}")]
+    Brdf {
+        /// Its name.
+        name: &'static str,
+        /// What was asked of it.
+        what: &'static str,
+        /// What it said.
+        value: f64,
+        /// Polar angle of the view, radians.
+        theta: f64,
+        /// Width along the tangent.
+        alpha_x: f64,
+        /// Width along the bitangent.
+        alpha_y: f64,
+    },
     /// The observer asked the fit to stop.
     #[error("stopped before the table was complete; nothing was written")]
     Stopped,

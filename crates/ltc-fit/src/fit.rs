@@ -2,7 +2,7 @@
 
 use ltc_table::{BrdfInfo, CellStats, ChannelInfo, Errors, Manifest, Table, TableVersion, digest::digest};
 
-use crate::{FitError, FitSpec, Lattice, Observer, channels, entries, joint, measure};
+use crate::{Brdf, FitError, FitSpec, Lattice, Observer, brdf, channels, entries, joint, measure};
 
 /// What names the program in manifests.
 const TOOL: &str = concat!("ltc-fit ", env!("CARGO_PKG_VERSION"));
@@ -12,9 +12,21 @@ const TOOL: &str = concat!("ltc-fit ", env!("CARGO_PKG_VERSION"));
 /// # Errors
 /// [`FitError::Spec`] for a specification that makes no sense, [`FitError::Stopped`] when the observer says so.
 pub fn fit(spec: &FitSpec, observer: Observer<'_>) -> Result<(Table, Errors), FitError> {
-    spec.validate()?;
-    let brdf = spec.brdf()?;
+    fit_with(spec.brdf()?, spec, observer)
+}
+
+/// The same for a BRDF that [`FitSpec::brdf`] does not know, one's own for example; `spec.brdf` must have its name.
+///
+/// # Errors
+/// As [`fit`], and [`FitError::Brdf`] for a BRDF that gives negative values or NaN.
+pub fn fit_with(
+    brdf: &dyn Brdf,
+    spec: &FitSpec,
+    observer: Observer<'_>,
+) -> Result<(Table, Errors), FitError> {
+    validate_with(brdf, spec)?;
     let lattice = Lattice::new(&spec.axes, &spec.floors);
+    brdf::check(brdf, &lattice)?;
     let alone = entries::fit_entries(brdf, &spec.axes, &lattice, spec.entries, observer)?;
     let m = joint::refine(brdf, &spec.axes, &lattice, &alone, spec.joint, observer)?;
     let (magnitude, fresnel) = channels::fit_channels(brdf, &spec.axes, &lattice, spec.channels, observer)?;
@@ -23,6 +35,14 @@ pub fn fit(spec: &FitSpec, observer: Observer<'_>) -> Result<(Table, Errors), Fi
     let errors = measure::errors(brdf, &bare, &cells, spec.measure)?;
     let (m, magnitude, fresnel) = (bare.m().to_vec(), bare.magnitude().to_vec(), bare.fresnel().to_vec());
     Ok((Table::new(spec.axes.clone(), m, magnitude, fresnel, cells)?, errors))
+}
+
+fn validate_with(brdf: &dyn Brdf, spec: &FitSpec) -> Result<(), FitError> {
+    if spec.brdf != brdf.name() {
+        let reason = format!("is \"{}\", the BRDF's name is \"{}\"", spec.brdf, brdf.name());
+        return Err(FitError::Spec { field: "brdf", reason });
+    }
+    spec.validate_settings()
 }
 
 /// A fitted table with its manifest; `created` in RFC 3339, UTC.
@@ -36,6 +56,22 @@ pub fn publish(
     version: u32,
     created: String,
 ) -> Result<TableVersion, FitError> {
+    publish_with(spec.brdf()?, spec, table, errors, version, created)
+}
+
+/// The same for a BRDF that [`FitSpec::brdf`] does not know.
+///
+/// # Errors
+/// As [`publish`], and [`FitError::Spec`] when `spec.brdf` is not the BRDF's name.
+pub fn publish_with(
+    brdf: &dyn Brdf,
+    spec: &FitSpec,
+    table: &Table,
+    errors: Errors,
+    version: u32,
+    created: String,
+) -> Result<TableVersion, FitError> {
+    validate_with(brdf, spec)?;
     let payload = TableVersion::payload_of(table)?;
     let manifest = Manifest {
         name: spec.name.clone(),
@@ -53,7 +89,7 @@ pub fn publish(
         floors: spec.floors.clone(),
         brdf: BrdfInfo {
             name: spec.brdf.clone(),
-            parameters: serde_json::json!({ "masking_shadowing": "Smith, height-correlated", "fresnel": 1 }),
+            parameters: brdf.parameters(),
         },
         fit: serde_json::to_value(spec).map_err(ltc_table::TableError::from)?,
         errors,
@@ -72,8 +108,13 @@ fn channel_infos() -> Vec<ChannelInfo> {
     };
     vec![
         info("m", &[3, 3], "row-major matrix, cosine space to lobe; interpolate it, then invert"),
-        info("magnitude", &[], "n = integral of rho cos at F = 1"),
-        info("fresnel", &[], "f = integral of (1 - wo.wh)^5 rho cos; reflectance = F0 n + (F90 - F0) f"),
+        info("magnitude", &[], "n = integral of rho cos at F = 1 (base colour 1)"),
+        info(
+            "fresnel",
+            &[],
+            "f = integral of w rho cos, w = (1 - wo.wh)^5 unless brdf.parameters says otherwise; reflectance = F0 n + (F90 - \
+             F0) f",
+        ),
         info("cell_tv", &[], "total variation between the entry's lobe and the BRDF's"),
         info("cell_leak", &[], "share of the entry's lobe below the horizon"),
         info("cell_condition", &[], "condition number of the entry's matrix"),
@@ -95,11 +136,17 @@ pub struct Verification {
 /// # Errors
 /// [`FitError::Spec`] when the manifest's `fit` is not a specification this program knows.
 pub fn verify(version: &TableVersion) -> Result<Verification, FitError> {
+    verify_with(spec_of(version)?.brdf()?, version)
+}
+
+/// The same for a BRDF that [`FitSpec::brdf`] does not know.
+///
+/// # Errors
+/// As [`verify`], and [`FitError::Spec`] when the manifest names another BRDF.
+pub fn verify_with(brdf: &dyn Brdf, version: &TableVersion) -> Result<Verification, FitError> {
     let manifest = version.manifest();
-    let spec: FitSpec = serde_json::from_value(manifest.fit.clone())
-        .map_err(|e| FitError::Spec { field: "fit", reason: e.to_string() })?;
-    spec.validate()?;
-    let brdf = spec.brdf()?;
+    let spec = spec_of(version)?;
+    validate_with(brdf, &spec)?;
     let table = version.table();
     let cells = measure::cells(brdf, table, &spec.floors, spec.measure.samples)?;
     let errors = measure::errors(brdf, table, &cells, spec.measure)?;
@@ -112,6 +159,12 @@ pub fn verify(version: &TableVersion) -> Result<Verification, FitError> {
         faults.push("fit.axes or fit.name differ from the manifest's own".to_owned());
     }
     Ok(Verification { errors, faults })
+}
+
+/// How the manifest says that the table was fitted.
+fn spec_of(version: &TableVersion) -> Result<FitSpec, FitError> {
+    serde_json::from_value(version.manifest().fit.clone())
+        .map_err(|e| FitError::Spec { field: "fit", reason: e.to_string() })
 }
 
 /// Relative difference that other mathematical libraries may make.

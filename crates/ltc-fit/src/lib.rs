@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 mod bfgs;
+pub mod brdf;
 pub mod channels;
 pub mod draw;
 pub mod entries;
@@ -26,10 +27,11 @@ mod symmetry;
 mod tv;
 
 pub use bfgs::Stop;
+pub use brdf::{Beckmann, Brdf, CharlieSheen, DisneyDiffuse, GgxFamily, OrenNayar};
 pub use entry::{EntryFit, fit_entry, refine_entry};
 pub use error::FitError;
-pub use fit::{Verification, fit, publish, verify};
-pub use lobe::{Brdf, GgxFamily, Lobe};
+pub use fit::{Verification, fit, fit_with, publish, publish_with, verify, verify_with};
+pub use lobe::Lobe;
 pub use points::DiskPoints;
 pub use progress::{Observer, Progress, silent};
 pub use spec::FitSpec;

@@ -6,7 +6,7 @@ use ltc_table::{Axis, Floors, Mapping, Quantity, check_name};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Brdf, FitError, GgxFamily, channels::ChannelSettings, entries::EntrySettings, joint::JointSettings,
+    Brdf, FitError, GgxFamily, brdf, channels::ChannelSettings, entries::EntrySettings, joint::JointSettings,
     measure::MeasureSettings,
 };
 
@@ -16,7 +16,7 @@ use crate::{
 pub struct FitSpec {
     /// Name of the table.
     pub name: String,
-    /// Name of the BRDF: `ggx`.
+    /// Name of the BRDF: one of [`brdf::names`], or of one's own ([`crate::fit_with`]).
     pub brdf: String,
     /// The table's axes: θ, α (isotropic) or θ, φ, α, λ.
     pub axes: Vec<Axis>,
@@ -36,7 +36,15 @@ pub struct FitSpec {
 
 impl FitSpec {
     /// Names of the presets.
-    pub const PRESETS: [&'static str; 2] = ["ggx-isotropic", "ggx-anisotropic"];
+    pub const PRESETS: [&'static str; 7] = [
+        "ggx-isotropic",
+        "ggx-anisotropic",
+        "beckmann-isotropic",
+        "beckmann-anisotropic",
+        "disney-diffuse",
+        "oren-nayar",
+        "charlie-sheen",
+    ];
 
     /// A specification by name.
     ///
@@ -44,6 +52,9 @@ impl FitSpec {
     /// [`FitError::NoSuchPreset`].
     pub fn preset(name: &str) -> Result<Self, FitError> {
         use Quantity::{Alpha, Theta};
+        if let Some(spec) = brdf::preset(name) {
+            return Ok(spec);
+        }
         let (axes, joint) = match name {
             "ggx-isotropic" => (
                 vec![Axis::full(Theta, Mapping::SqrtOneMinusCos, 64), Axis::full(Alpha, Mapping::Sqrt, 64)],
@@ -76,14 +87,10 @@ impl FitSpec {
     /// # Errors
     /// [`FitError::Spec`] for an unknown name.
     pub fn brdf(&self) -> Result<&'static dyn Brdf, FitError> {
-        if self.brdf == GgxFamily.name() {
-            Ok(&GgxFamily)
-        } else {
-            Err(FitError::Spec {
-                field: "brdf",
-                reason: format!("\"{}\" is not known; there is: ggx", self.brdf),
-            })
-        }
+        brdf::by_name(&self.brdf).ok_or_else(|| FitError::Spec {
+            field: "brdf",
+            reason: format!("\"{}\" is not known; there are: {}", self.brdf, brdf::names()),
+        })
     }
 
     /// Checks every field.
@@ -91,10 +98,18 @@ impl FitSpec {
     /// # Errors
     /// [`FitError::Spec`], naming the field and what is wrong with it.
     pub fn validate(&self) -> Result<(), FitError> {
+        self.brdf()?;
+        self.validate_settings()
+    }
+
+    /// Checks every field but the BRDF's name.
+    ///
+    /// # Errors
+    /// [`FitError::Spec`], naming the field and what is wrong with it.
+    pub(crate) fn validate_settings(&self) -> Result<(), FitError> {
         use Quantity::{Alpha, Lambda, Phi, Theta};
         let wrong = |field, reason: String| Err(FitError::Spec { field, reason });
         check_name(&self.name).or_else(|e| wrong("name", e.to_string()))?;
-        self.brdf()?;
         if self.objective != "total_variation" {
             return wrong(
                 "objective",

@@ -2,7 +2,14 @@
 
 use crate::support::{command, ltc, names_in, text};
 
-const NAMES: [&str; 2] = ["ggx-anisotropic", "ggx-isotropic"];
+const NAMES: [&str; 6] = [
+    "beckmann-isotropic",
+    "charlie-sheen",
+    "disney-diffuse",
+    "ggx-anisotropic",
+    "ggx-isotropic",
+    "oren-nayar",
+];
 
 #[test]
 fn tables_are_listed_and_inspected() {
@@ -16,7 +23,9 @@ fn tables_are_listed_and_inspected() {
         assert_eq!((&manifest["name"], &manifest["version"]), (&table["name"], &table["latest"]));
         assert_eq!(manifest["digest"], table["digest"]);
         assert!(manifest["digest"].as_str().unwrap().starts_with("sha256:"));
-        assert!(manifest["errors"]["standard_draw"]["tv_mean"].as_f64().unwrap() < 0.0996);
+        // The published GGX table's, and what one LTC can do for Beckmann.
+        let bound = if name.starts_with("ggx") { 0.0996 } else { 0.13 };
+        assert!(manifest["errors"]["standard_draw"]["tv_mean"].as_f64().unwrap() < bound);
         for field in ["axes", "channels", "lobes", "brdf", "fit", "created", "licence"] {
             assert!(!manifest[field].is_null(), "{name} has no {field}");
         }
