@@ -2,12 +2,19 @@
 
 mod boundary;
 mod horizon;
+mod line;
+mod line_cylinder;
 mod polygon;
 mod sample;
+mod segment;
+mod strip;
 
 pub use horizon::Horizon;
+pub use line::{Line, LineSample};
+pub use line_cylinder::LineCylinder;
 pub use polygon::Polygon;
 pub use sample::{LightSample, SampleLight};
+pub use strip::Strip;
 
 use crate::{Ltc, Real};
 
