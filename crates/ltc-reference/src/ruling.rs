@@ -32,27 +32,20 @@ impl<'a, L: Lobe> Along<'a, L> {
 
     /// `∫ D(ω) ‖ω × ω_t‖ / ‖p‖² dl` over the points p from `a` to `b`: the integral of eq. 1.6 without its factor 2.
     ///
-    /// With `l = d tan θ`, d the distance of the line from the origin, it is `∫ D(ω(θ)) cos θ / d dθ`. The interval is
-    /// cut where the line meets the lobe's planes, and at some of the angles nearest to the lobe's hints.
+    /// With t the angle of ω it is `∫ D(ω(t)) / ‖p‖ dt`: `dl ‖ω × ω_t‖ = ‖p‖ dt`. The interval is cut where the line meets the
+    /// lobe's planes, and at some of the angles nearest to the lobe's hints.
     pub fn integrate(&self, a: DVec3, b: DVec3, tolerance: Tolerance) -> Result<Estimate, ReferenceError> {
-        let Some(tangent) = (b - a).try_normalize() else { return Ok(Estimate::default()) };
-        let (l0, l1) = (a.dot(tangent), b.dot(tangent));
-        // The foot of the perpendicular, from the nearer end, which loses fewer digits.
-        let nearer = if l0.abs() < l1.abs() { a } else { b };
-        let foot = nearer - tangent * nearer.dot(tangent);
-        let Some(across) = foot.try_normalize() else { return Ok(Estimate::default()) };
-        let distance = foot.length();
-        let direction = |theta: f64| across * theta.cos() + tangent * theta.sin();
-        let limits = self.limits(l0.atan2(distance), l1.atan2(distance), across, tangent);
+        let Some(arc) = Arc::new(a, b) else { return Ok(Estimate::default()) };
+        let limits = self.limits(&arc);
         let pieces = limits.len() - 1;
         let tolerance = Tolerance { absolute: tolerance.absolute / pieces as f64, ..tolerance };
         let mut total = Estimate::default();
         for pair in limits.windows(2) {
-            let middle = direction(0.5 * (pair[0] + pair[1]));
+            let middle = arc.direction(0.5 * (pair[0] + pair[1]));
             if self.half_spaces.iter().any(|n| n.dot(middle) <= 0.0) {
                 continue;
             }
-            let integrand = |theta: f64| self.lobe.density(direction(theta)) * theta.cos() / distance;
+            let integrand = |t: f64| self.lobe.density(arc.direction(t)) * arc.inverse_distance(t);
             let piece = integrate_1d(integrand, pair[0], pair[1], tolerance)?;
             total.value += piece.value;
             total.error += piece.error;
@@ -61,18 +54,19 @@ impl<'a, L: Lobe> Along<'a, L> {
         Ok(total)
     }
 
-    /// Ascending angles from `start` to `end` between which the integrand is smooth.
-    fn limits(&self, start: f64, end: f64, across: DVec3, tangent: DVec3) -> Vec<f64> {
-        let inside = |theta: &f64| *theta > start + MIN_PIECE && *theta < end - MIN_PIECE;
+    /// Ascending angles between which the integrand is smooth, the first and the last those of the ends.
+    fn limits(&self, arc: &Arc) -> Vec<f64> {
+        let &Arc { x, y, start, end, .. } = arc;
+        let inside = |t: &f64| *t > start + MIN_PIECE && *t < end - MIN_PIECE;
         let mut hints: Vec<f64> =
-            self.hints.iter().map(|w| w.dot(tangent).atan2(w.dot(across))).filter(inside).collect();
+            self.hints.iter().map(|w| w.dot(y).atan2(w.dot(x))).filter(inside).collect();
         hints.sort_by(f64::total_cmp);
         let step = hints.len().div_ceil(QUANTILES).max(1);
         let mut limits: Vec<f64> = hints.into_iter().step_by(step).collect();
         for n in &self.kinks {
-            // n · ω(θ) = 0.
-            let theta = (-n.dot(across)).atan2(n.dot(tangent));
-            limits.extend([theta - PI, theta, theta + PI].iter().filter(|t| inside(t)));
+            // n · ω(t) = 0.
+            let t = (-n.dot(x)).atan2(n.dot(y));
+            limits.extend([t - PI, t, t + PI].iter().filter(|t| inside(t)));
         }
         limits.extend([start, end]);
         limits.sort_by(f64::total_cmp);
@@ -81,6 +75,50 @@ impl<'a, L: Lobe> Along<'a, L> {
             limits = vec![start, end];
         }
         limits
+    }
+}
+
+/// A segment as directions: `ω(t) = x cos t + y sin t` for t from `start` to `end`.
+struct Arc {
+    x: DVec3,
+    y: DVec3,
+    start: f64,
+    end: f64,
+    /// Distance of the line from the origin.
+    distance: f64,
+    /// Does x point to the line's nearest point? Else y does.
+    from_foot: bool,
+}
+
+impl Arc {
+    /// `None` for a segment that spans no angle.
+    fn new(a: DVec3, b: DVec3) -> Option<Self> {
+        let tangent = (b - a).try_normalize()?;
+        let (l0, l1) = (a.dot(tangent), b.dot(tangent));
+        // The foot of the perpendicular, from the nearer end, which loses fewer digits.
+        let nearer = if l0.abs() < l1.abs() { a } else { b };
+        let foot = nearer - tangent * nearer.dot(tangent);
+        let across = foot.try_normalize()?;
+        let distance = foot.length();
+        if l0 <= 0.0 && l1 >= 0.0 {
+            let (start, end) = (l0.atan2(distance), l1.atan2(distance));
+            return Some(Self { x: across, y: tangent, start, end, distance, from_foot: true });
+        }
+        // On one side of the foot angles count from the line's own direction: for a line that all but lies on a ray they are small
+        // numbers with all their digits, where those from the foot would be π/2 and little more.
+        let outward = tangent * l0.signum();
+        let (near, far) = (distance.atan2(l0.abs()), distance.atan2(l1.abs()));
+        let (start, end) = (near.min(far), near.max(far));
+        Some(Self { x: outward, y: across, start, end, distance, from_foot: false })
+    }
+
+    fn direction(&self, t: f64) -> DVec3 {
+        self.x * t.cos() + self.y * t.sin()
+    }
+
+    /// 1/‖p‖ of the point in direction t.
+    fn inverse_distance(&self, t: f64) -> f64 {
+        (if self.from_foot { t.cos() } else { t.sin() }) / self.distance
     }
 }
 

@@ -11,13 +11,19 @@ pub(super) struct Segment<R: Real> {
     ends: [R::Vec3; 2],
     /// From the first end to the second.
     along: R::Vec3,
-    /// Unit normal of the plane through both ends and the shading point: along `p0 × p1`.
+    /// A normal of the plane through both ends and the shading point: `p0 × p1 = normal · moment`.
     normal: R::Vec3,
-    /// `|p0 × p1|`, the segment's length times the distance d of its line.
+    /// 1, but where the square of `p0 × p1` would be very small.
     moment: R,
+    /// `‖normal‖²`.
+    squared_normal: R,
     /// Scaled lengths per length.
     shrink: R,
 }
+
+/// Below this `‖p0 × p1‖²`, of scaled ends, the normal is normalised: 1e-24 squared away from f32's smallest number even
+/// after a matrix of condition 1e6.
+const SMALL: f64 = 1e-24;
 
 impl<R: Real> Segment<R> {
     /// `None` for a segment that spans no angle: of zero length, on a ray from the shading point, or through it.
@@ -32,13 +38,18 @@ impl<R: Real> Segment<R> {
         }
         let shrink = R::ONE / scale;
         let (p0, p1) = (p0 * shrink, p1 * shrink);
-        let cross = R::Vec3::new(
+        let mut normal = R::Vec3::new(
             R::product_difference(p0.y(), p1.z(), p0.z(), p1.y()),
             R::product_difference(p0.z(), p1.x(), p0.x(), p1.z()),
             R::product_difference(p0.x(), p1.y(), p0.y(), p1.x()),
         );
-        let normal = cross.try_unit()?;
-        Some(Self { ends: [p0, p1], along: p1 - p0, normal, moment: cross.dot(normal), shrink })
+        let (mut moment, mut squared_normal) = (R::ONE, normal.dot(normal));
+        if squared_normal < R::of(SMALL) {
+            let unit = normal.try_unit()?;
+            (moment, squared_normal) = (normal.dot(unit), unit.dot(unit));
+            normal = unit;
+        }
+        Some(Self { ends: [p0, p1], along: p1 - p0, normal, moment, squared_normal, shrink })
     }
 
     /// Scaled lengths per length.
@@ -47,8 +58,11 @@ impl<R: Real> Segment<R> {
     }
 
     /// Unit vector from the shading point towards the nearest point of the line.
+    #[inline]
     pub fn towards_line(&self) -> Option<R::Vec3> {
-        Some(self.along.try_unit()?.cross(self.normal))
+        let towards = self.along.cross(self.normal);
+        let length = towards.length();
+        if length > R::of(SMALL).sqrt() { Some(towards * (R::ONE / length)) } else { towards.try_unit() }
     }
 
     /// `∫ D(ω) ‖ω × ω_t‖ / ‖p‖² dl` along the segment, per scaled length: half of eq. 1.6 of the 2017 chapter, by its
@@ -77,7 +91,7 @@ impl<R: Real> Segment<R> {
         let [c0, c1, c2] = ltc.target_from_cosine().columns();
         let width = R::Vec3::new(c0.dot(self.normal), c1.dot(self.normal), c2.dot(self.normal));
         let squared_width = width.dot(width);
-        let inverse_width = R::ONE / squared_width.sqrt();
+        let inverse = R::ONE / squared_width;
         let stretch = self.moment / ltc.determinant();
         let cosine_from_target = ltc.cosine_from_target();
         let mut ends = ends.map(|p| cosine_from_target.apply(p));
@@ -89,10 +103,10 @@ impl<R: Real> Segment<R> {
         }
         let along = cosine_from_target.apply(self.along);
         // c_z / d = (along × m)_z / |m|², m = q0 × q1.
-        let nearness = (along.x() * width.y() - along.y() * width.x()) / (stretch * squared_width);
-        let sine = kept * stretch * squared_width * inverse_width;
+        let nearness = (along.x() * width.y() - along.y() * width.x()) * inverse / stretch;
+        let sine = kept * stretch * squared_width.sqrt();
         let half = R::of(0.5) / R::PI;
-        half * inverse_width * cosine_integral(ends, sine, nearness)
+        half * (self.squared_normal * inverse).sqrt() * cosine_integral(ends, sine, nearness)
     }
 }
 
@@ -163,7 +177,7 @@ pub(super) fn clip_above<R: Real>(ends: &mut [R::Vec3; 2], moment: R::Vec3) -> R
 impl<R: Real> Segment<R> {
     /// The angle between the ends, in (0, π).
     fn angle(&self) -> R {
-        self.moment.atan2(self.ends[0].dot(self.ends[1]))
+        (self.moment * self.squared_normal.sqrt()).atan2(self.ends[0].dot(self.ends[1]))
     }
 
     pub fn sample(&self, u: R) -> Option<LineSample<R>> {
@@ -185,7 +199,7 @@ impl<R: Real> Segment<R> {
     /// `dΔ/dl / Δ = d / (‖p‖² Δ)`, d the distance of the line.
     pub fn pdf_length(&self, t: R) -> R {
         let point = self.ends[0] + self.along * t;
-        let distance = self.moment / self.along.length();
+        let distance = self.moment * self.squared_normal.sqrt() / self.along.length();
         self.shrink * distance / (point.dot(point) * self.angle())
     }
 }

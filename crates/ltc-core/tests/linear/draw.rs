@@ -53,7 +53,9 @@ impl Draw {
         z.z = z.z.abs();
         let (x, y) = z.any_orthonormal_pair();
         let widths = dvec3(1.0 / condition, self.log_range(1.0 / condition, 1.0), 1.0);
-        DMat3::from_cols(x, y, z) * DMat3::from_diagonal(widths) * DMat3::from_rotation_z(self.range(0.0, TAU))
+        DMat3::from_cols(x, y, z)
+            * DMat3::from_diagonal(widths)
+            * DMat3::from_rotation_z(self.range(0.0, TAU))
     }
 
     /// The ends of a segment of a length in [0.01, 100] about 1 away, anywhere around the shading point.
@@ -61,6 +63,20 @@ impl Draw {
         let centre = self.direction() * self.log_range(0.1, 10.0);
         let half = self.direction() * (0.5 * self.log_range(0.01, 100.0));
         [centre - half, centre + half]
+    }
+
+    /// The same with its middle in a direction drawn from the lobe.
+    pub fn aimed_ends(&mut self, matrix: DMat3) -> [DVec3; 2] {
+        let [a, b] = self.ends();
+        let (centre, half) = ((a + b) * 0.5, (b - a) * 0.5);
+        let aimed = self.aim(matrix) * centre.length();
+        [aimed - half, aimed + half]
+    }
+
+    /// A direction drawn from the lobe.
+    pub fn aim(&mut self, matrix: DMat3) -> DVec3 {
+        let u = [self.unit(), self.unit()];
+        ltc(matrix).sample(u)
     }
 
     /// A unit vector at right angles to an axis.

@@ -2,3 +2,4 @@
 
 mod draw;
 mod oracle;
+mod single;
