@@ -2,10 +2,12 @@
 
 mod boundary;
 mod horizon;
+mod plane;
 mod polygon;
 mod sample;
 
 pub use horizon::Horizon;
+pub(crate) use plane::Plane;
 pub use polygon::Polygon;
 pub use sample::{LightSample, SampleLight};
 
