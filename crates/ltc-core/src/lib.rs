@@ -26,6 +26,7 @@
 //! # Ok::<(), ltc_core::InputError>(())
 //! ```
 
+mod distribution;
 mod error;
 mod frame;
 mod fresnel;
@@ -38,6 +39,10 @@ mod roughness;
 #[cfg(test)]
 mod testing;
 
+pub use distribution::{
+    Base, ClampedCosine, ClampedCosineSquared, ClosedForm, Distribution, LinearlyTransformed, LtcMixture,
+    PolygonBase, UniformHemisphere, UniformSphere,
+};
 pub use error::{InputError, check_range};
 pub use frame::ShadingFrame;
 pub use fresnel::{reflectance, schlick, schlick_weight};

@@ -116,6 +116,8 @@ pub trait Real:
     fn abs(self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
+    /// Cube root.
+    fn cbrt(self) -> Self;
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
     /// Four-quadrant arc tangent of `self / x`.
@@ -180,6 +182,10 @@ macro_rules! impl_real {
             #[inline]
             fn sqrt(self) -> Self {
                 $real::sqrt(self)
+            }
+            #[inline]
+            fn cbrt(self) -> Self {
+                $real::cbrt(self)
             }
             #[inline]
             fn sin_cos(self) -> (Self, Self) {

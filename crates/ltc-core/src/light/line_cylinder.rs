@@ -74,7 +74,7 @@ fn cap<R: Real>(p: R::Vec3, inward: R::Vec3, radius: R, ltc: &Ltc<R>, horizon: H
     // Ratios of what may be very small or very large, before they are multiplied.
     let distance = q.length();
     let size = radius / distance;
-    above * (q.z() / distance) * (size * size) * (facing / (distance * ltc.determinant()))
+    above * (q.z() / distance) * (size * size) * (facing / distance * ltc.inverse_determinant())
 }
 
 /// The fraction of a disk's area above z = 0: its centre at height `z`, the z of its unit normal, its radius.

@@ -92,7 +92,7 @@ impl<R: Real> Segment<R> {
         let width = R::Vec3::new(c0.dot(self.normal), c1.dot(self.normal), c2.dot(self.normal));
         let squared_width = width.dot(width);
         let inverse = R::ONE / squared_width;
-        let stretch = self.moment / ltc.determinant();
+        let stretch = self.moment * ltc.inverse_determinant();
         let cosine_from_target = ltc.cosine_from_target();
         let mut ends = ends.map(|p| cosine_from_target.apply(p));
         if horizon.cosine {
