@@ -4,7 +4,50 @@ use super::segment::Segment;
 use super::{Horizon, Light};
 use crate::{InputError, Ltc, Real, Vector};
 
-/// A thin cylinder from `p0` to `p1` without end caps, by the line approximation of Heitz and Hill 2017.
+/// A thin cylinder from `p0` to `p1` without end caps, by the line approximation of Heitz and Hill 2017
+/// ("Linear-Light Shading with Linearly Transformed Cosines", §1.2 to 1.4).
+///
+/// It emits the same radiance from all of its wall, in all directions outwards; `p0`, `p1` and `radius` are lengths of one unit,
+/// whichever. With `ω_t` the line's direction its value is
+///
+/// `min(1, R ∫ D(ω) 2 ‖ω × ω_t‖ / ‖p‖² dl)` (eq. 1.6, 1.10 and 1.11),
+///
+/// in closed form (eq. 1.20 to 1.26, rearranged so that nothing cancels). f64 is within 1e-9 of that integral. f32 is within
+/// 1e-4 · max(1, cond(M)/100) of f64 where the radius is at most the distance of the nearest point; 7e-6 was seen at
+/// cond(M) = 100. Beyond that the error grows with radius over distance.
+///
+/// # How well it stands for a cylinder
+/// It is the limit of a thin one. Largest error against the true wall, for lines with their nearest point in the lobe at distance d, as a
+/// fraction of the lobe; "lobe 1/3" is an LTC that is 3 to 1 times narrower than the cosine, at any tilt:
+///
+/// | R/d | cosine | lobe 1/3 | lobe 1/10 |
+/// |---|---|---|---|
+/// | 0.01 | 4e-5 | 2e-4 | 5e-4 |
+/// | 0.03 | 3e-4 | 1e-3 | 2e-2 |
+/// | 0.1 | 4e-3 | 2e-2 | 0.3 |
+/// | 0.3 | 4e-2 | 0.3 | 0.6 |
+/// | 0.9 | 0.5 | 0.7 | 0.9 |
+///
+/// That is some 0.4 (R/d)² for Lambert, and useless where the cylinder looks wider than the lobe.
+///
+/// # Degenerate lights
+/// - Radius 0, length 0, both ends on one ray from the shading point (`p0 ∥ p1`), a line exactly through the shading point: 0.
+/// - In the surface's horizon or below it: 0. A line that is parallel to the horizon vanishes at once when it meets it.
+/// - A shading point closer to the line than `radius` is treated like any other: the integral grows as 1/d, so that the value is 1
+///   where the near part is above both horizons. A true cylinder would be dark from inside.
+/// - Nearness alone does no harm: a line that passes the shading point at 1e-200 (f32: 1e-30) of its length, with a radius to match,
+///   has the value that it should have.
+///
+/// ```
+/// use glam::DVec3;
+/// use ltc_core::{Light, Line};
+///
+/// // A tube 1.2 long and 26 mm thick, 2 above a diffuse floor.
+/// let tube = Line::<f64>::new(DVec3::new(-0.6, 0.0, 2.0), DVec3::new(0.6, 0.0, 2.0), 0.013)?;
+/// let fraction = tube.irradiance();
+/// assert!((fraction - 0.002345).abs() < 1e-6);
+/// # Ok::<(), ltc_core::InputError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line<R: Real> {
     p0: R::Vec3,

@@ -21,8 +21,8 @@ pub(super) struct Segment<R: Real> {
     shrink: R,
 }
 
-/// Below this `‖p0 × p1‖²`, of scaled ends, the normal is normalised: 1e-24 squared away from f32's smallest number even
-/// after a matrix of condition 1e6.
+/// Below this `‖p0 × p1‖²`, of scaled ends, the normal is normalised: then `‖Mᵀ normal‖²` does not underflow in f32 up to a
+/// condition of 1e7.
 const SMALL: f64 = 1e-24;
 
 impl<R: Real> Segment<R> {
@@ -113,7 +113,7 @@ impl<R: Real> Segment<R> {
 /// The bracket of [`Segment::integral`] for the ends `q0`, `q1`, with `sine = |q0 × q1|` and `nearness = c_z/d`.
 #[inline]
 fn cosine_integral<R: Real>([q0, q1]: [R::Vec3; 2], sine: R, nearness: R) -> R {
-    let (r0, r1) = (q0.length(), q1.length());
+    let (r0, r1) = (length::<R>(q0), length::<R>(q1));
     let (product, cosine) = (r0 * r1, q0.dot(q1));
     // 1 + cos Δ cancels near π, 1 − cos Δ near 0.
     let half_tangent = if cosine >= R::ZERO { sine / (product + cosine) } else { (product - cosine) / sine };
@@ -126,6 +126,17 @@ fn cosine_integral<R: Real>([q0, q1]: [R::Vec3; 2], sine: R, nearness: R) -> R {
         sine.atan2(cosine) - sine * inverse
     };
     nearness * bow + ends
+}
+
+/// The length of a vector whose square may underflow: an end that a horizon cuts is as near as the line is.
+#[inline]
+fn length<R: Real>(v: R::Vec3) -> R {
+    let length = v.length();
+    if length > R::of(SMALL).sqrt() {
+        return length;
+    }
+    let scale = v.max_abs();
+    if scale > R::ZERO { scale * (v * (R::ONE / scale)).length() } else { R::ZERO }
 }
 
 /// `(Δ − sin Δ) / t³` as a series in `x = t²`, t = tan(Δ/2) ≤ 1/8, with a relative error below ε.

@@ -26,8 +26,8 @@ fn line([p0, p1]: [DVec3; 2], radius: f64) -> Line<f64> {
 /// A matrix of one of several conditions, a light that its lobe sees more often than not, and the horizons to cut it by.
 fn draw_case(draw: &mut Draw, case: usize) -> (DMat3, [DVec3; 2], Horizon) {
     let condition = [1.0, 3.0, 10.0, 100.0, 1000.0][case % 5];
-    let matrix = if case % 2 == 0 { draw.matrix(condition) } else { draw.lobe_matrix(condition) };
-    let ends = if case % 3 == 0 { draw.ends() } else { draw.aimed_ends(matrix) };
+    let matrix = if case.is_multiple_of(2) { draw.matrix(condition) } else { draw.lobe_matrix(condition) };
+    let ends = if case.is_multiple_of(3) { draw.ends() } else { draw.aimed_ends(matrix) };
     (matrix, ends, HORIZONS[case / 10 % 4])
 }
 

@@ -17,7 +17,7 @@ impl Both {
     fn new(matrix: DMat3, ends: [DVec3; 2], width: f64) -> Self {
         let m: Mat3 = matrix.as_mat3();
         let (narrow, wide) = (Ltc::<f32>::new(m).unwrap(), Ltc::<f64>::new(m.as_dmat3()).unwrap());
-        Self { narrow, wide, ends: ends.map(|p| p.as_vec3()), width: width as f32 }
+        Self { narrow, wide, ends: ends.map(DVec3::as_vec3), width: width as f32 }
     }
 
     /// The largest difference of all lights and horizons; and the largest value.
