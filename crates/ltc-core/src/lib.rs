@@ -38,6 +38,7 @@ mod real;
 mod roughness;
 #[cfg(test)]
 mod testing;
+mod texture;
 
 pub use distribution::{
     Base, ClampedCosine, ClampedCosineSquared, ClosedForm, Distribution, LinearlyTransformed, LtcMixture,
@@ -49,7 +50,9 @@ pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
 pub use light::{
     Horizon, Light, LightSample, Line, LineCylinder, LineSample, Polygon, SampleLight, Sides, Strip,
+    TextureFetch, TextureFrame, TexturedPolygon,
 };
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};
 pub use roughness::{ALPHA_MIN, Alpha, PerceptualRoughness};
+pub use texture::{PrefilteredTexture, TexelGrid};

@@ -9,6 +9,7 @@ mod polygon;
 mod sample;
 mod segment;
 mod strip;
+mod textured;
 
 pub use horizon::Horizon;
 pub use line::{Line, LineSample};
@@ -17,6 +18,7 @@ pub(crate) use plane::Plane;
 pub use polygon::Polygon;
 pub use sample::{LightSample, SampleLight};
 pub use strip::Strip;
+pub use textured::{TextureFetch, TextureFrame, TexturedPolygon};
 
 use crate::{Ltc, Real};
 
