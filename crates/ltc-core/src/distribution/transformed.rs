@@ -41,6 +41,7 @@ impl<R: Real, B: Base<R>> LinearlyTransformed<R, B> {
     /// # Errors
     /// [`InputError::NotFinite`] for a NaN or infinite entry; [`InputError::SingularMatrix`] unless det M > 0 and both M⁻¹
     /// and the density are finite in this precision.
+    #[inline]
     pub fn new(target_from_base: R::Mat3) -> Result<Self, InputError> {
         let columns = target_from_base.columns();
         if !columns.iter().all(|c| c.is_finite()) {

@@ -60,6 +60,7 @@ impl<R: Real> Line<R> {
     ///
     /// # Errors
     /// [`InputError::NotFinite`] for a NaN or infinite number, [`InputError::OutOfRange`] for a radius below 0.
+    #[inline]
     pub fn new(p0: R::Vec3, p1: R::Vec3, radius: R) -> Result<Self, InputError> {
         if !(p0.is_finite() && p1.is_finite()) {
             return Err(InputError::NotFinite { name: "end of a line" });

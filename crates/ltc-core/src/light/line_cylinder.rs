@@ -1,6 +1,7 @@
 //! Thin cylinders with end caps, by the line approximation.
 
 use super::line::Line;
+use super::segment::unit;
 use super::{Horizon, Light, LightSample, SampleLight};
 use crate::{InputError, Ltc, Matrix, Real, Vector};
 
@@ -78,7 +79,7 @@ impl<R: Real> LineCylinder<R> {
         }
         let shrink = R::ONE / scale;
         let (p0, p1, radius) = (p0 * shrink, p1 * shrink, self.line.radius() * shrink);
-        let Some(axis) = (p1 - p0).try_unit() else { return R::ZERO };
+        let Some(axis) = unit::<R>(p1 - p0) else { return R::ZERO };
         cap(p0, axis, radius, ltc, horizon) + cap(p1, -axis, radius, ltc, horizon)
     }
 }

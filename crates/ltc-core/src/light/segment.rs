@@ -60,9 +60,7 @@ impl<R: Real> Segment<R> {
     /// Unit vector from the shading point towards the nearest point of the line.
     #[inline]
     pub fn towards_line(&self) -> Option<R::Vec3> {
-        let towards = self.along.cross(self.normal);
-        let length = towards.length();
-        if length > R::of(SMALL).sqrt() { Some(towards * (R::ONE / length)) } else { towards.try_unit() }
+        unit::<R>(self.along.cross(self.normal))
     }
 
     /// `∫ D(ω) ‖ω × ω_t‖ / ‖p‖² dl` along the segment, per scaled length: half of eq. 1.6 of the 2017 chapter, by its
@@ -157,6 +155,14 @@ fn angle_less_sine_series<R: Real>(x: R) -> R {
     ];
     let count = if R::EPSILON.to_f64() > 1e-10 { 4 } else { 9 };
     TERMS[..count].iter().rev().fold(R::ZERO, |sum, &term| R::of(term) - x * sum)
+}
+
+/// [`Vector::try_unit`], without its scaling for the usual vectors whose square is in range.
+#[inline]
+pub(super) fn unit<R: Real>(v: R::Vec3) -> Option<R::Vec3> {
+    let squared = v.dot(v);
+    let usual = squared > R::of(SMALL) && squared < R::of(1.0 / SMALL);
+    if usual { Some(v * (R::ONE / squared.sqrt())) } else { v.try_unit() }
 }
 
 /// Moves the end that lies below z = 0, if any, onto it, and says which fraction of the segment is left: 0 for one that

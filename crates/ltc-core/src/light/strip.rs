@@ -1,7 +1,7 @@
 //! Strip lights: thin rectangles, in closed form.
 
 use super::line::check_extent;
-use super::segment::Segment;
+use super::segment::{self, Segment};
 use super::{Horizon, Light, LightSample, SampleLight, Sides};
 use crate::{InputError, Ltc, Real, Vector};
 
@@ -60,14 +60,14 @@ impl<R: Real> Strip<R> {
             return Err(InputError::NotFinite { name: "normal of a strip" });
         }
         check_extent::<R>("width", width)?;
-        let unit = normal.try_unit().ok_or(InputError::Degenerate { name: "normal of a strip" })?;
+        let unit = segment::unit::<R>(normal).ok_or(InputError::Degenerate { name: "normal of a strip" })?;
         // A strip of no length has no direction to be orthogonal to, and no light.
         let normal = match unit_difference::<R>(p0, p1) {
             Some(axis) => {
                 let across = unit - axis * unit.dot(axis);
                 // What is left of a parallel normal is rounding error, whose direction means nothing.
                 let keeps_a_direction = across.length() > R::EPSILON * R::of(16.0);
-                across.try_unit().filter(|_| keeps_a_direction)
+                segment::unit::<R>(across).filter(|_| keeps_a_direction)
             }
             None => Some(unit),
         };
@@ -103,7 +103,7 @@ impl<R: Real> Strip<R> {
 
 /// The unit vector from `a` to `b`, whose difference may overflow.
 fn unit_difference<R: Real>(a: R::Vec3, b: R::Vec3) -> Option<R::Vec3> {
-    (b * R::of(0.5) - a * R::of(0.5)).try_unit()
+    segment::unit::<R>(b * R::of(0.5) - a * R::of(0.5))
 }
 
 impl<R: Real> Light<R> for Strip<R> {
