@@ -2,13 +2,22 @@
 
 mod boundary;
 mod horizon;
+mod line;
+mod line_cylinder;
+mod plane;
 mod polygon;
 mod sample;
+mod segment;
+mod strip;
 mod textured;
 
 pub use horizon::Horizon;
+pub use line::{Line, LineSample};
+pub use line_cylinder::LineCylinder;
+pub(crate) use plane::Plane;
 pub use polygon::Polygon;
 pub use sample::{LightSample, SampleLight};
+pub use strip::Strip;
 pub use textured::{TextureFetch, TextureFrame, TexturedPolygon};
 
 use crate::{Ltc, Real};

@@ -27,6 +27,16 @@ impl<'a, R: Real> Polygon<'a, R> {
         Ok(Self { vertices, sides })
     }
 
+    /// Its vertices.
+    pub fn vertices(&self) -> &'a [R::Vec3] {
+        self.vertices
+    }
+
+    /// Which sides emit.
+    pub fn sides(&self) -> Sides {
+        self.sides
+    }
+
     /// Proportional to the distance of the shading point in front of the light's plane (negative: behind it), and exactly
     /// 0 where rounding decides the side: within 8 ε of the farthest vertex's distance.
     ///
