@@ -42,7 +42,9 @@ pub use error::{InputError, check_range};
 pub use frame::ShadingFrame;
 pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
-pub use light::{Horizon, Light, LightSample, Polygon, SampleLight, Sides};
+pub use light::{
+    Horizon, Light, LightSample, LtcBatch, Polygon, Quad, QuadBatch, SampleLight, Sides,
+};
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};
 pub use roughness::{ALPHA_MIN, Alpha, PerceptualRoughness};

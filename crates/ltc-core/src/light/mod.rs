@@ -1,12 +1,21 @@
 //! Lights, as a shading point sees them: each file a shape, each shape a closed form.
 
+mod angle;
+mod batch;
 mod boundary;
+mod convex;
 mod horizon;
+mod lane;
 mod polygon;
+mod quad;
+mod ring;
 mod sample;
+mod simd;
 
+pub use batch::{LtcBatch, QuadBatch};
 pub use horizon::Horizon;
 pub use polygon::Polygon;
+pub use quad::Quad;
 pub use sample::{LightSample, SampleLight};
 
 use crate::{Ltc, Real};
