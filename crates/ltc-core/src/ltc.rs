@@ -1,6 +1,7 @@
 //! Linearly transformed cosines.
 
 use crate::{InputError, Matrix, Real, Vector};
+use glam::DVec3;
 
 /// A clamped cosine whose directions are moved by a matrix `M`: the distribution
 /// `D(ω) = Do(M⁻¹ω / ‖M⁻¹ω‖) · |M⁻¹| / ‖M⁻¹ω‖³`, `Do(ω) = max(0, z)/π`
@@ -31,19 +32,22 @@ impl<R: Real> Ltc<R> {
         if largest <= R::ZERO {
             return Err(InputError::SingularMatrix { determinant: 0.0 });
         }
-        let [c0, c1, c2] = columns.map(|c| R::Vec3::new(c.x() / largest, c.y() / largest, c.z() / largest));
+        // In f64, so that an f32 inverse is off by its own rounding alone, not by that of the products in it.
+        let wide = |c: R::Vec3| DVec3::new(c.x().to_f64(), c.y().to_f64(), c.z().to_f64()) / largest.to_f64();
+        let [c0, c1, c2] = columns.map(wide);
         let rows = [c1.cross(c2), c2.cross(c0), c0.cross(c1)];
         let determinant = c0.dot(rows[0]);
-        let inverse_scale = R::ONE / determinant;
-        let [r0, r1, r2] = rows.map(|r| r * inverse_scale);
-        let valid = determinant > R::ZERO && [r0, r1, r2].iter().all(|r| r.is_finite());
+        let inverse_scale = 1.0 / determinant;
+        let round = |v: DVec3| R::Vec3::new(R::of(v.x), R::of(v.y), R::of(v.z));
+        let [r0, r1, r2] = rows.map(|r| round(r * inverse_scale));
+        let valid = R::of(determinant) > R::ZERO && [r0, r1, r2].iter().all(|r| r.is_finite());
         if !valid {
-            return Err(InputError::SingularMatrix { determinant: determinant.to_f64() });
+            return Err(InputError::SingularMatrix { determinant });
         }
         Ok(Self {
-            target_from_cosine: R::Mat3::from_columns(c0, c1, c2),
+            target_from_cosine: R::Mat3::from_columns(round(c0), round(c1), round(c2)),
             cosine_from_target: R::Mat3::from_columns(r0, r1, r2).transposed(),
-            determinant,
+            determinant: R::of(determinant),
         })
     }
 

@@ -46,7 +46,7 @@ pub(super) struct Limits {
     pub range: [f64; 2],
     /// Least magnitude of each vertex's largest coordinate.
     pub nearest: f64,
-    /// Least sine of an arc longer than 90°.
+    /// Least sine of an edge longer than 90°, seen in cosine space.
     pub sine: f64,
 }
 
@@ -60,6 +60,16 @@ pub(super) struct Edge<L> {
     pub normal: Triple<L>,
 }
 
+impl<L: Lane> Edge<L> {
+    /// Whether it is so near π that its plane is lost to rounding.
+    #[inline(always)]
+    pub fn flat(&self, limits: &Limits) -> L::Mask {
+        let cosine = dot(self.a, self.b);
+        let least = cosine.abs() * cosine.lit(limits.sine);
+        L::and(cosine.less(cosine.lit(0.0)), dot(self.normal, self.normal).less(least * least))
+    }
+}
+
 /// A running sum over arcs that are cut by the horizon of cosine space.
 #[derive(Clone, Copy)]
 pub(super) struct CosineSum<L: Lane> {
@@ -67,25 +77,17 @@ pub(super) struct CosineSum<L: Lane> {
     /// Where the outline goes below, and where it comes back: x and y.
     pub exit: [L; 2],
     pub entry: [L; 2],
-    /// Arcs near π, whose plane is lost.
-    pub hard: L::Mask,
 }
 
 impl<L: Lane> CosineSum<L> {
     #[inline(always)]
-    pub fn new(zero: L, hard: L::Mask) -> Self {
-        Self { sum: zero, exit: [zero; 2], entry: [zero; 2], hard }
+    pub fn new(zero: L) -> Self {
+        Self { sum: zero, exit: [zero; 2], entry: [zero; 2] }
     }
 
     /// Adds the arc from `a` to `b` whose cross product is `normal`. `CUT`: something may be below.
     #[inline(always)]
-    pub fn arc<K: Arctangent, const CUT: bool>(
-        &mut self,
-        a: Triple<L>,
-        b: Triple<L>,
-        normal: Triple<L>,
-        limits: &Limits,
-    ) {
+    pub fn arc<K: Arctangent, const CUT: bool>(&mut self, a: Triple<L>, b: Triple<L>, normal: Triple<L>) {
         let zero = self.sum.lit(0.0);
         let length = dot(normal, normal).sqrt();
         let (mut cosine, mut sine, mut rise) = (dot(a, b), length, normal[2]);
@@ -109,9 +111,6 @@ impl<L: Lane> CosineSum<L> {
         let inverse = zero.lit(1.0) / (length * larger).max(zero.lit(L::TINY));
         let theta = unfold::<L, K>(smaller * length * inverse, sine, cosine);
         self.sum = theta.mul_add(rise * larger * inverse, self.sum);
-        // An arc that is left out has no sine.
-        let flat = L::and(cosine.less(zero), sine.less(magnitude * zero.lit(limits.sine)));
-        self.hard = L::or(self.hard, L::and(flat, zero.less(sine)));
     }
 
     /// The fraction, from whichever side the light is seen.
@@ -145,7 +144,7 @@ impl<L: Lane> SurfaceGap<L> {
 
     /// Adds what of the edge is above the surface to `sum`.
     #[inline(always)]
-    pub fn edge<K: Arctangent>(&mut self, edge: &Edge<L>, sum: &mut CosineSum<L>, limits: &Limits) {
+    pub fn edge<K: Arctangent>(&mut self, edge: &Edge<L>, sum: &mut CosineSum<L>) {
         let Edge { p, q, a, b, normal } = *edge;
         let zero = p[2].lit(0.0);
         let none = [zero; 3];
@@ -164,15 +163,15 @@ impl<L: Lane> SurfaceGap<L> {
         // An edge that is gone stays as a point.
         let from = choose(enters, point, a);
         let to = choose(exits, point, choose(L::and(a_below, b_below), a, b));
-        sum.arc::<K, true>(from, to, times(normal, kept), limits);
+        sum.arc::<K, true>(from, to, times(normal, kept));
     }
 
     /// Adds the arc along the surface's horizon.
     #[inline(always)]
-    pub fn close<K: Arctangent>(&self, lobe: &Lobe<L>, sum: &mut CosineSum<L>, limits: &Limits) {
+    pub fn close<K: Arctangent>(&self, lobe: &Lobe<L>, sum: &mut CosineSum<L>) {
         let (from, to) = (self.exit_plan, self.entry_plan);
         let turn = from[0].mul_add(to[1], -(from[1] * to[0]));
-        sum.arc::<K, true>(self.exit, self.entry, times(lobe.horizon, turn), limits);
+        sum.arc::<K, true>(self.exit, self.entry, times(lobe.horizon, turn));
     }
 }
 
@@ -188,23 +187,27 @@ pub(super) fn integrate<L: Lane, K: Arctangent>(
     limits: &Limits,
 ) -> (L, L::Mask) {
     let edges = edges(vertices, lobe);
-    let mut sum = CosineSum::new(view.facing.lit(0.0), view.hard);
+    let mut sum = CosineSum::new(view.facing.lit(0.0));
     if surface && any_below(&vertices[0], &vertices[1], &vertices[2], &vertices[3]) {
         let mut gap = SurfaceGap::new(view.facing.lit(0.0));
         for edge in &edges {
-            gap.edge::<K>(edge, &mut sum, limits);
+            gap.edge::<K>(edge, &mut sum);
         }
-        gap.close::<K>(lobe, &mut sum, limits);
+        gap.close::<K>(lobe, &mut sum);
     } else if any_below(&edges[0].a, &edges[1].a, &edges[2].a, &edges[3].a) {
         for e in &edges {
-            sum.arc::<K, true>(e.a, e.b, e.normal, limits);
+            sum.arc::<K, true>(e.a, e.b, e.normal);
         }
     } else {
         for e in &edges {
-            sum.arc::<K, false>(e.a, e.b, e.normal, limits);
+            sum.arc::<K, false>(e.a, e.b, e.normal);
         }
     }
-    (sum.fraction::<K>(view.facing), sum.hard)
+    let mut hard = view.hard;
+    for edge in &edges {
+        hard = L::or(hard, edge.flat(limits));
+    }
+    (sum.fraction::<K>(view.facing), hard)
 }
 
 #[inline(always)]

@@ -46,11 +46,11 @@ fn edges_at_once<S: Simd, K: Arctangent>(
     let lobe = Lobe::new(*columns);
     let edge = ring(simd, vertices, columns);
     let zero = Four::of(f64x4::splat(simd, 0.0));
-    let mut sums = CosineSum::new(zero, zero.less(zero));
+    let mut sums = CosineSum::new(zero);
     let mut total;
     if surface && edge.p[2].less(zero).any_true() {
         let mut gaps = SurfaceGap::new(zero);
-        gaps.edge::<K>(&edge, &mut sums, limits);
+        gaps.edge::<K>(&edge, &mut sums);
         total = reduce(&sums);
         let gap = SurfaceGap {
             exit: [sum(gaps.exit[0]), sum(gaps.exit[1]), sum(gaps.exit[2])],
@@ -58,15 +58,15 @@ fn edges_at_once<S: Simd, K: Arctangent>(
             exit_plan: [sum(gaps.exit_plan[0]), sum(gaps.exit_plan[1])],
             entry_plan: [sum(gaps.entry_plan[0]), sum(gaps.entry_plan[1])],
         };
-        gap.close::<K>(&lobe, &mut total, limits);
+        gap.close::<K>(&lobe, &mut total);
     } else if edge.a[2].less(zero).any_true() {
-        sums.arc::<K, true>(edge.a, edge.b, edge.normal, limits);
+        sums.arc::<K, true>(edge.a, edge.b, edge.normal);
         total = reduce(&sums);
     } else {
-        sums.arc::<K, false>(edge.a, edge.b, edge.normal, limits);
+        sums.arc::<K, false>(edge.a, edge.b, edge.normal);
         total = reduce(&sums);
     }
-    (!hard && !total.hard).then(|| (total.fraction::<K>(facing), facing > 0.0))
+    (!hard && !edge.flat(limits).any_true()).then(|| (total.fraction::<K>(facing), facing > 0.0))
 }
 
 /// The edges, from each vertex to the next.
@@ -116,6 +116,5 @@ fn reduce<S: Simd>(sums: &CosineSum<Four<S>>) -> CosineSum<f64> {
         sum: sum(sums.sum),
         exit: [sum(sums.exit[0]), sum(sums.exit[1])],
         entry: [sum(sums.entry[0]), sum(sums.entry[1])],
-        hard: sums.hard.any_true(),
     }
 }
