@@ -43,7 +43,8 @@ pub use frame::ShadingFrame;
 pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
 pub use light::{
-    Horizon, Light, LightSample, LtcBatch, Polygon, Quad, QuadBatch, SampleLight, Sides,
+    Cubic, EdgeForm, Exact, Horizon, Light, LightSample, LtcBatch, Polygon, PublishedRational, Quad,
+    QuadBatch, Rational, SampleLight, Sides, clipped_sphere, clipped_sphere_fit,
 };
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};

@@ -80,7 +80,9 @@ fn f64_is_the_oracle_to_1e_9() {
             let leaky = integrate_polygon_boundary(&lobe, false, &c.quad, options).unwrap().value;
             let ltc = Ltc::<f64>::new(c.m).unwrap();
             let light = Quad::<f64>::new(c.quad, Sides::Two).unwrap();
-            for (statistics, value) in [(&mut polygon, exact(c.m, &c.quad)), (&mut quad, light.integrate(&ltc))] {
+            for (statistics, value) in
+                [(&mut polygon, exact(c.m, &c.quad)), (&mut quad, light.integrate(&ltc))]
+            {
                 statistics.add(value - truth);
                 assert!((value - truth).abs() < 1e-9, "{value} {truth} {c:?}");
             }

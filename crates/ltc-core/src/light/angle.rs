@@ -147,13 +147,9 @@ mod tests {
     #[test]
     fn ends_are_exact_and_nothing_is_nan() {
         let pi = core::f64::consts::PI;
-        for (y, x, expected) in [
-            (0.0, 0.0, 0.0),
-            (0.0, 1.0, 0.0),
-            (0.0, -1.0, pi),
-            (1.0, 0.0, pi / 2.0),
-            (1e-200, -1e200, pi),
-        ] {
+        for (y, x, expected) in
+            [(0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, pi), (1.0, 0.0, pi / 2.0), (1e-200, -1e200, pi)]
+        {
             assert_eq!(angle::<f64, Double>(y, x), expected, "{y} {x}");
         }
     }

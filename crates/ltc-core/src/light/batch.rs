@@ -14,7 +14,7 @@ use crate::{InputError, Ltc};
 const PADDING: usize = 16;
 
 /// Where vectors of `f32` keep their digits; coordinates are scaled to a largest one in [1, 2).
-const LIMITS: Limits = Limits { plane: 1e-6, width: 1e-8, range: [0.5, 4.0], nearest: 1e-3, sine: 0.03 };
+const LIMITS: Limits = Limits { plane: 1e-6, width: 1e-8, range: [0.5, 4.0], nearest: 0.03, sine: 0.06 };
 /// Largest entry of `M⁻¹`, where that of `M` is 1.
 const STEEPEST: f32 = 1e5;
 
@@ -114,7 +114,8 @@ fn inverse(ltc: &Ltc<f32>) -> Option<[f32; 9]> {
 /// Computed in vectors of `f32`, with the instructions that the processor is found to have (AVX-512, AVX2 with FMA, SSE2,
 /// NEON, WebAssembly's; single numbers elsewhere). Within 2e-5, times cond(M)/100 where that is above 1, of the `f64`
 /// value of the same light. Lights for which `f32` is too short (within 1e-3 of their plane, not convex, narrower than
-/// 1e-4 of their distance, with an edge of more than 178°, a lobe narrower than 1e-5) take the way of [`Quad`] one by one.
+/// 1e-4 of their distance, with an edge of more than 176° or a corner 30 times nearer than another, a lobe narrower than
+/// 1e-5) take the way of [`Quad`] one by one.
 ///
 /// ```
 /// use glam::Vec3;
@@ -240,7 +241,8 @@ impl QuadBatch {
             let view = View::new(&vertices, &LIMITS);
             let (fraction, hard) = integrate::<_, Lanes>(&vertices, &view, &lobe, horizon.surface, &LIMITS);
             // A lobe that is missing is hard, too.
-            let missing = lobe.columns[2][2].abs().max(lobe.columns[2][0].abs()).max(lobe.columns[2][1].abs());
+            let missing =
+                lobe.columns[2][2].abs().max(lobe.columns[2][0].abs()).max(lobe.columns[2][1].abs());
             let hard = hard | missing.less(missing.lit(1e-30));
             let zero = fraction.lit(0.0);
             let front = zero.less(view.facing).to_bitmask();
@@ -263,8 +265,12 @@ impl QuadBatch {
     #[inline(always)]
     fn scaled<S: Simd>(&self, simd: S, start: usize) -> [Triple<Wide<S, S::f32s>>; 4] {
         let v = &self.vertices;
-        let [p, q, r, s] =
-            [v.triple(simd, 0, start), v.triple(simd, 3, start), v.triple(simd, 6, start), v.triple(simd, 9, start)];
+        let [p, q, r, s] = [
+            v.triple(simd, 0, start),
+            v.triple(simd, 3, start),
+            v.triple(simd, 6, start),
+            v.triple(simd, 9, start),
+        ];
         let farthest = reach(p).max(reach(q)).max(reach(r).max(reach(s)));
         // Exponents alone: 2^127 / 2^e.
         let exponent = farthest.0.to_bits() & 0x7f80_0000;
@@ -301,4 +307,54 @@ fn splat<S: Simd>(simd: S, numbers: &[f32; 9], k: usize) -> Triple<Wide<S, S::f3
         Wide::of(S::f32s::splat(simd, numbers[k + 1])),
         Wide::of(S::f32s::splat(simd, numbers[k + 2])),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::random;
+    use glam::{Mat3, Vec3};
+
+    fn levels() -> Vec<Level> {
+        let best = Level::new();
+        let mut levels = vec![best, Level::baseline()];
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        {
+            levels.extend(best.as_avx2().map(Simd::level));
+            levels.extend(best.as_sse4_2().map(Simd::level));
+        }
+        levels
+    }
+
+    /// Every level of instructions that this machine has, one number at a time included where nothing else is.
+    #[test]
+    fn all_levels_agree() {
+        let mut rng = random(31);
+        let mut r = || (rng() * 2.0 - 1.0) as f32;
+        let (mut quads, mut ltcs) = (QuadBatch::new(), LtcBatch::new());
+        while quads.len() < 3001 {
+            let Ok(ltc) = Ltc::new(Mat3::from_cols_array(&[0.0; 9].map(|_: f32| r()))) else { continue };
+            let (c, u, v) =
+                (Vec3::new(r(), r(), r()) * 2.0, Vec3::new(r(), r(), r()), Vec3::new(r(), r(), r()));
+            let Ok(quad) = Quad::new([c - u - v, c + u - v, c + u + v, c - u + v], Sides::Two) else {
+                continue;
+            };
+            quads.push(quad);
+            ltcs.push(ltc);
+        }
+        let run = |level| {
+            let mut out = vec![f32::NAN; quads.len()];
+            quads.run(level, Lobes::Each(&ltcs), Horizon::BOTH, &mut out).map(|()| out)
+        };
+        let singles: Vec<f32> =
+            (0..quads.len()).map(|i| quads.single(i, Lobes::Each(&ltcs), Horizon::BOTH)).collect();
+        for level in levels() {
+            let out = run(level).unwrap();
+            for (i, (a, b)) in out.iter().zip(&singles).enumerate() {
+                let inverse = ltcs.inverses.get(i).into_iter().fold(0.0_f32, |m, x| m.max(x.abs()));
+                let tolerance = 2e-5 * (inverse / 33.0).max(1.0);
+                assert!((a - b).abs() < tolerance, "{level:?}: {i}: {a} {b}");
+            }
+        }
+    }
 }

@@ -230,11 +230,7 @@ fn exact_cross(a: DVec3, b: DVec3) -> DVec3 {
         let rs = r * s;
         p.mul_add(q, -rs) + (-r).mul_add(s, rs)
     };
-    DVec3::new(
-        difference(a.y, b.z, a.z, b.y),
-        difference(a.z, b.x, a.x, b.z),
-        difference(a.x, b.y, a.y, b.x),
-    )
+    DVec3::new(difference(a.y, b.z, a.z, b.y), difference(a.z, b.x, a.x, b.z), difference(a.x, b.y, a.y, b.x))
 }
 
 /// The integral over the inside, as a fraction, from the boundary sum of a polygon that winds positively.

@@ -252,8 +252,7 @@ impl<L: Lane> View<L> {
         let far = farthest * farthest;
         let oblique = (facing * facing).less(squared * far * zero.lit(limits.plane));
         let narrow = squared.less((dot(u, u) + dot(w, w)) * far * zero.lit(limits.width));
-        let range =
-            L::or(farthest.less(zero.lit(limits.range[0])), zero.lit(limits.range[1]).less(farthest));
+        let range = L::or(farthest.less(zero.lit(limits.range[0])), zero.lit(limits.range[1]).less(farthest));
         let range = L::or(range, nearest.less(zero.lit(limits.nearest)));
         let shape = L::or(
             L::or(along_u.less(zero), squared.less(along_u)),

@@ -4,12 +4,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// One number per light, and what a branch-free closed form does with it.
 pub(super) trait Lane:
-    Copy
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// One truth value per light.
     type Mask: Copy;

@@ -4,17 +4,21 @@ mod angle;
 mod batch;
 mod boundary;
 mod convex;
+mod edge_form;
 mod horizon;
 mod lane;
 mod polygon;
+mod proxy;
 mod quad;
 mod ring;
 mod sample;
 mod simd;
 
 pub use batch::{LtcBatch, QuadBatch};
+pub use edge_form::{Cubic, EdgeForm, Exact, PublishedRational, Rational};
 pub use horizon::Horizon;
 pub use polygon::Polygon;
+pub use proxy::{clipped_sphere, clipped_sphere_fit};
 pub use quad::Quad;
 pub use sample::{LightSample, SampleLight};
 

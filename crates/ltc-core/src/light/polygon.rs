@@ -28,6 +28,16 @@ impl<'a, R: Real> Polygon<'a, R> {
         Ok(Self { vertices, sides })
     }
 
+    /// Four vertices, known to be finite.
+    pub(super) fn of_quad(vertices: &'a [R::Vec3; 4], sides: Sides) -> Self {
+        Self { vertices, sides }
+    }
+
+    /// The vertices.
+    pub fn vertices(&self) -> &'a [R::Vec3] {
+        self.vertices
+    }
+
     /// Proportional to the distance of the shading point in front of the light's plane (negative: behind it), and exactly
     /// 0 where `f64` rounding decides the side: within 8 ε of the farthest vertex's distance. Also 0 for a light without
     /// area: narrower than the same.
@@ -51,7 +61,7 @@ impl<'a, R: Real> Polygon<'a, R> {
     }
 
     /// Whether the light is seen, and if so from which side: +1 winds negatively.
-    fn orientation(&self) -> Option<R> {
+    pub(super) fn orientation(&self) -> Option<R> {
         let facing = self.facing();
         let visible = match self.sides {
             Sides::One => facing > 0.0,

@@ -16,8 +16,7 @@ pub struct Quad<R: Real> {
 }
 
 /// Nothing is lost in `f64` this far from the degenerate.
-const LIMITS: Limits =
-    Limits { plane: 1e-14, width: 1e-26, range: [1e-10, 1e10], nearest: 0.0, sine: 1e-4 };
+const LIMITS: Limits = Limits { plane: 1e-14, width: 1e-26, range: [1e-10, 1e10], nearest: 0.0, sine: 1e-4 };
 
 impl<R: Real> Quad<R> {
     /// # Errors
@@ -40,10 +39,14 @@ impl<R: Real> Quad<R> {
         self.sides
     }
 
-    /// The same light, by the general way.
+    /// The same light as a polygon.
+    pub fn polygon(&self) -> Polygon<'_, R> {
+        Polygon::of_quad(&self.vertices, self.sides)
+    }
+
     #[cold]
-    fn as_polygon(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
-        Polygon::new(&self.vertices, self.sides).map_or(R::ZERO, |p| p.integrate_within(ltc, horizon))
+    fn the_long_way(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
+        self.polygon().integrate_within(ltc, horizon)
     }
 }
 
@@ -56,7 +59,7 @@ impl<R: Real> Light<R> for Quad<R> {
         // Beyond this, products leave the range of f64.
         let wild = columns.iter().flatten().any(|x| x.abs() > 1e30);
         if !horizon.cosine || wild {
-            return self.as_polygon(ltc, horizon);
+            return self.the_long_way(ltc, horizon);
         }
         let easy = if R::EPSILON.to_f64() > 1e-10 {
             integrate_single(&vertices, &columns, horizon.surface, &LIMITS)
@@ -66,7 +69,7 @@ impl<R: Real> Light<R> for Quad<R> {
         match easy {
             Some((fraction, front)) if front || self.sides == Sides::Two => R::of(fraction),
             Some(_) => R::ZERO,
-            None => self.as_polygon(ltc, horizon),
+            None => self.the_long_way(ltc, horizon),
         }
     }
 }

@@ -111,7 +111,8 @@ fn near_plane(rng: &mut SplitMix64) -> Case {
     let normal = unit(rng);
     let [u, v] = across(rng, normal);
     // The foot of the shading point: inside, near an edge, near a corner, beyond.
-    let near = |rng: &mut SplitMix64| 1.0 + decades(rng, -7.0, -1.0) * [-1.0, 1.0][(rng.unit() * 2.0) as usize];
+    let near =
+        |rng: &mut SplitMix64| 1.0 + decades(rng, -7.0, -1.0) * [-1.0, 1.0][(rng.unit() * 2.0) as usize];
     let inside = |rng: &mut SplitMix64| rng.range(-0.9, 0.9);
     let [a, b] = match (rng.unit() * 4.0) as usize {
         0 => [inside(rng), inside(rng)],
