@@ -1,5 +1,7 @@
 //! The errors that the fast forms state, over the domain they state, and what the horizons cost.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
+
 mod common;
 
 use common::{Statistics, across, decades, lobe};
@@ -36,7 +38,7 @@ struct Errors {
 fn errors(value: impl Fn(&Quad<f32>, &Ltc<f32>) -> f32) -> Errors {
     let mut errors = Errors { all: Statistics::default(), cut: Statistics::default() };
     for (m, quad) in domain() {
-        let rounded = quad.map(|v| v.as_vec3());
+        let rounded = quad.map(DVec3::as_vec3);
         let ltc = Ltc::<f64>::new(m.as_mat3().as_dmat3()).unwrap();
         let light = Quad::<f64>::new(rounded.map(|v| v.as_dvec3()), Sides::Two).unwrap();
         let narrow = Ltc::<f32>::new(m.as_mat3()).unwrap();
@@ -104,4 +106,18 @@ fn edge_terms_keep_the_errors_they_state() {
     let lost =
         |theta: f64| 1.0 - PublishedRational::angle_over_sine(theta.cos(), theta.sin()) * theta.sin() / theta;
     assert!(lost(pi - 1.7e-4) > 0.4 && lost(pi - 1e-5) > 0.9, "{} {}", lost(pi - 1.7e-4), lost(pi - 1e-5));
+}
+
+/// What leaks without the surface's horizon, in closed form: a light that is all of what is below.
+#[test]
+fn the_leak_is_the_mass_below_the_surface() {
+    let ground = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(x, y)| DVec3::new(x, y, -1e-7));
+    for (m, _) in domain().take(1000) {
+        let row = m.row(2);
+        let leak = 0.5 * (1.0 - row.z / row.length());
+        let (ltc, light) = (Ltc::<f64>::new(m).unwrap(), Quad::<f64>::new(ground, Sides::Two).unwrap());
+        let seen = light.integrate_within(&ltc, Horizon::COSINE);
+        assert!((seen - leak).abs() < 1e-5, "{seen} {leak} {m}");
+        assert_eq!(light.integrate(&ltc), 0.0);
+    }
 }

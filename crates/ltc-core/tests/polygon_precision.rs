@@ -1,10 +1,12 @@
 //! What `f32` costs: polygons, quads and batches in `f32` against `f64` on the very same rounded inputs, and `f64` against
 //! the oracle.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
+
 mod common;
 
 use common::{Case, SWEEPS, Statistics, Sweep, case};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 use ltc_core::points::SplitMix64;
 use ltc_core::{Horizon, Light, Ltc, LtcBatch, Polygon, Quad, QuadBatch, Sides};
 use ltc_reference::{AboveHorizon, LtcLobe, PolygonOptions, Tolerance, integrate_polygon_boundary};
@@ -29,16 +31,16 @@ struct Precision {
 fn precision(cases: &[Case]) -> Precision {
     let (mut quads, mut ltcs) = (QuadBatch::new(), LtcBatch::new());
     for c in cases {
-        quads.push(Quad::<f32>::new(c.quad.map(|v| v.as_vec3()), Sides::Two).unwrap());
+        quads.push(Quad::<f32>::new(c.quad.map(DVec3::as_vec3), Sides::Two).unwrap());
         ltcs.push(Ltc::<f32>::new(c.m.as_mat3()).unwrap());
     }
     let mut batched = vec![0.0; cases.len()];
     quads.integrate_each(&ltcs, Horizon::BOTH, &mut batched).unwrap();
     let mut p = [Statistics::default(); 4];
     for (i, c) in cases.iter().enumerate() {
-        let rounded = c.quad.map(|v| v.as_vec3());
+        let rounded = c.quad.map(DVec3::as_vec3);
         let ltc = Ltc::<f32>::new(c.m.as_mat3()).unwrap();
-        let truth = exact(c.m.as_mat3().as_dmat3(), &rounded.map(|v| v.as_dvec3()));
+        let truth = exact(c.m.as_mat3().as_dmat3(), &rounded.map(Vec3::as_dvec3));
         let polygon = Polygon::<f32>::new(&rounded, Sides::Two).unwrap().integrate(&ltc);
         let quad = Quad::<f32>::new(rounded, Sides::Two).unwrap().integrate(&ltc);
         for (statistics, value) in p.iter_mut().zip([polygon, quad, batched[i]]) {

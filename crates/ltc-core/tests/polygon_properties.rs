@@ -1,5 +1,7 @@
 //! What must hold for every polygon, quad and batch, whatever the numbers.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
+
 mod common;
 
 use common::{Case, SWEEPS, across, case, decades, lobe, unit};
@@ -238,7 +240,7 @@ fn batches_of_every_length_are_their_quads() {
     let all: Vec<Case> = cases(12, 70).collect();
     let quad = |c: &Case, i: usize| {
         let sides = if i.is_multiple_of(2) { Sides::Two } else { Sides::One };
-        Quad::<f32>::new(c.quad.map(|v| v.as_vec3()), sides).unwrap()
+        Quad::<f32>::new(c.quad.map(DVec3::as_vec3), sides).unwrap()
     };
     for len in 0..=all.len() {
         for horizon in HORIZONS {
