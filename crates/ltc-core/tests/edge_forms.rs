@@ -5,7 +5,7 @@
 mod common;
 
 use common::{Statistics, across, decades, lobe};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 use ltc_core::points::SplitMix64;
 use ltc_core::{Cubic, EdgeForm, Exact, Horizon, Light, Ltc, PublishedRational, Quad, Rational, Sides};
 
@@ -40,7 +40,7 @@ fn errors(value: impl Fn(&Quad<f32>, &Ltc<f32>) -> f32) -> Errors {
     for (m, quad) in domain() {
         let rounded = quad.map(DVec3::as_vec3);
         let ltc = Ltc::<f64>::new(m.as_mat3().as_dmat3()).unwrap();
-        let light = Quad::<f64>::new(rounded.map(|v| v.as_dvec3()), Sides::Two).unwrap();
+        let light = Quad::<f64>::new(rounded.map(Vec3::as_dvec3), Sides::Two).unwrap();
         let narrow = Ltc::<f32>::new(m.as_mat3()).unwrap();
         let error =
             f64::from(value(&Quad::new(rounded, Sides::Two).unwrap(), &narrow)) - light.integrate(&ltc);

@@ -127,3 +127,32 @@ fn f64_is_the_cubature_too() {
         assert!((exact(c.m, &c.quad) - truth).abs() < 1e-9, "{truth} {c:?}");
     }
 }
+
+/// Small distant lights are bright ones: their values keep their leading digits, not their absolute error alone.
+#[test]
+fn small_distant_lights_keep_their_digits() {
+    let mut rng = SplitMix64::new(9);
+    for size in [1e-1, 1e-2, 1e-3, 1e-4] {
+        let (mut quads, mut ltcs, mut truths) = (QuadBatch::new(), LtcBatch::new(), Vec::new());
+        let mut single = Statistics::default();
+        for _ in 0..2000 {
+            let (m, _) = common::lobe(&mut rng, 0.3, 0.8);
+            let axis = (m * DVec3::Z).normalize_or_zero();
+            let [u, v] = common::across(&mut rng, axis);
+            let quad = common::parallelogram(axis, u * size, v * size).map(DVec3::as_vec3);
+            let truth = exact(m.as_mat3().as_dmat3(), &quad.map(Vec3::as_dvec3));
+            let (light, ltc) =
+                (Quad::<f32>::new(quad, Sides::Two).unwrap(), Ltc::<f32>::new(m.as_mat3()).unwrap());
+            single.add(f64::from(light.integrate(&ltc)) / truth - 1.0);
+            quads.push(light);
+            ltcs.push(ltc);
+            truths.push(truth);
+        }
+        let mut out = vec![0.0; truths.len()];
+        quads.integrate_each(&ltcs, Horizon::BOTH, &mut out).unwrap();
+        let mut batch = Statistics::default();
+        out.iter().zip(&truths).for_each(|(value, truth)| batch.add(f64::from(*value) / truth - 1.0));
+        println!("size {size:e}: relative error {:.1e} one by one, {:.1e} batched", single.max, batch.max);
+        assert!(single.max < 3e-6 && batch.max < 1e-6 / size, "{size}: {} {}", single.max, batch.max);
+    }
+}
