@@ -37,6 +37,7 @@ mod real;
 mod roughness;
 #[cfg(test)]
 mod testing;
+mod texture;
 
 pub use error::{InputError, check_range};
 pub use frame::ShadingFrame;
@@ -44,8 +45,10 @@ pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
 pub use light::{
     Cubic, EdgeForm, Exact, Horizon, Light, LightSample, LtcBatch, Polygon, PublishedRational, Quad,
-    QuadBatch, Rational, SampleLight, Sides, clipped_sphere, clipped_sphere_fit,
+    QuadBatch, Rational, SampleLight, Sides, TextureFetch, TextureFrame, TexturedPolygon, clipped_sphere,
+    clipped_sphere_fit,
 };
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};
 pub use roughness::{ALPHA_MIN, Alpha, PerceptualRoughness};
+pub use texture::{PrefilteredTexture, TexelGrid};

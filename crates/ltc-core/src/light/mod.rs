@@ -13,6 +13,7 @@ mod quad;
 mod ring;
 mod sample;
 mod simd;
+mod textured;
 
 pub use batch::{LtcBatch, QuadBatch};
 pub use edge_form::{Cubic, EdgeForm, Exact, PublishedRational, Rational};
@@ -21,6 +22,7 @@ pub use polygon::Polygon;
 pub use proxy::{clipped_sphere, clipped_sphere_fit};
 pub use quad::Quad;
 pub use sample::{LightSample, SampleLight};
+pub use textured::{TextureFetch, TextureFrame, TexturedPolygon};
 
 use crate::{Ltc, Real};
 
