@@ -8,34 +8,44 @@ use glam::DVec3;
 
 mod bfgs;
 pub mod channels;
+pub mod checkpoint;
 pub mod draw;
 pub mod entries;
 mod entry;
 mod error;
 mod fit;
+mod forecast;
 pub mod gauge;
 pub mod joint;
 mod lobe;
 pub mod measure;
+mod plan;
 mod points;
 mod progress;
 mod regular;
+mod run;
 mod spec;
+pub mod spec_file;
 mod start;
 mod symmetry;
 mod tv;
+mod verify;
 
 pub use bfgs::Stop;
 pub use entry::{EntryFit, fit_entry, refine_entry};
 pub use error::FitError;
-pub use fit::{Verification, fit, publish, verify};
+pub use fit::{fit, publish};
+pub use forecast::{Forecast, Outlook};
 pub use lobe::{Brdf, GgxFamily, Lobe};
+pub use plan::{Cost, Limits, Plan};
 pub use points::DiskPoints;
 pub use progress::{Observer, Progress, silent};
+pub use run::{EntryRecord, FitRun, FitState, Fitted, StageTime};
 pub use spec::FitSpec;
 pub use start::median_start;
 pub use symmetry::{Lattice, Node, Pattern, Tie};
 pub use tv::{total_variation, total_variation_gradient};
+pub use verify::{Verification, verify};
 
 /// The unit direction of polar angle `theta` and azimuth `phi`.
 pub fn direction(theta: f64, phi: f64) -> DVec3 {
