@@ -59,7 +59,7 @@ pub fn publish(
     Ok(TableVersion::new(manifest, payload)?)
 }
 
-fn channel_infos() -> Vec<ChannelInfo> {
+pub(crate) fn channel_infos() -> Vec<ChannelInfo> {
     let info = |name: &str, shape: &[usize], meaning: &str| ChannelInfo {
         name: name.to_owned(),
         shape: shape.to_vec(),

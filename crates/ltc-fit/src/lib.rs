@@ -16,6 +16,7 @@ mod error;
 mod fit;
 mod forecast;
 pub mod gauge;
+pub mod grid_errors;
 pub mod joint;
 mod lobe;
 pub mod measure;
@@ -45,7 +46,7 @@ pub use spec::FitSpec;
 pub use start::median_start;
 pub use symmetry::{Lattice, Node, Pattern, Tie};
 pub use tv::{total_variation, total_variation_gradient};
-pub use verify::{Verification, verify};
+pub use verify::{Verification, refit_digest, refit_plan, verify};
 
 /// The unit direction of polar angle `theta` and azimuth `phi`.
 pub fn direction(theta: f64, phi: f64) -> DVec3 {

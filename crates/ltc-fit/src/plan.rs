@@ -121,7 +121,10 @@ impl Cost {
                 (ENTRIES, alone * (DRAW + comparisons * DERIVE)),
                 (JOINT, joint.steps as f64 * product(joint.queries, joint.samples) * (DRAW + DERIVE)),
                 (CHANNELS, nodes_and_queries(channels.samples, channels.queries) * DRAW),
-                (MEASUREMENT, nodes_and_queries(measure.samples, measure.queries) * (DRAW + COMPARE)),
+                (
+                    MEASUREMENT,
+                    nodes_and_queries(measure.samples, measure.queries) * (3.0 * DRAW + 2.0 * COMPARE),
+                ),
             ],
         }
     }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     EntryFit, FitError, Observer, Plan, Progress, Stop, channels, entries,
+    grid_errors::grid_errors,
     joint::{JointState, Refinement},
     measure,
     progress::{CHANNELS, ENTRIES, JOINT, MEASUREMENT},
@@ -241,7 +242,7 @@ impl<'a> FitRun<'a> {
 
     fn measure(&mut self, observer: Observer<'_>) -> Result<(), FitError> {
         let report = |done| {
-            let go_on = observer(Progress { stage: MEASUREMENT, done, total: 2, tv: None });
+            let go_on = observer(Progress { stage: MEASUREMENT, done, total: 3, tv: None });
             if go_on { Ok(()) } else { Err(FitError::Stopped) }
         };
         let (brdf, spec) = (self.plan.brdf(), self.plan.spec());
@@ -251,9 +252,11 @@ impl<'a> FitRun<'a> {
         let cells = measure::cells(brdf, &bare, &spec.floors, spec.measure.samples)?;
         report(1)?;
         let errors = measure::errors(brdf, &bare, &cells, spec.measure)?;
+        report(2)?;
+        let grid = Some(grid_errors(brdf, &bare, &spec.floors, spec.measure.samples)?);
         let CellStats { tv, leak, condition } = cells;
-        self.state.errors = Some(Measured { tv, leak, condition, errors });
-        report(2)
+        self.state.errors = Some(Measured { tv, leak, condition, errors: Errors { grid, ..errors } });
+        report(3)
     }
 
     fn add_time(&mut self, stage: &str, seconds: f64) {

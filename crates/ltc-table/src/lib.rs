@@ -29,7 +29,7 @@ pub use catalogue::Catalogue;
 pub use channels::Channels;
 pub use error::TableError;
 pub use lookup::{Lobe, Lookup};
-pub use manifest::{BrdfInfo, ChannelInfo, DrawErrors, Errors, Floors, Manifest};
+pub use manifest::{BrdfInfo, ChannelInfo, DrawErrors, Errors, Floors, GridErrors, Manifest};
 pub use precision::Precision;
 pub use query::{Folded, Query};
 pub use shelf::{Added, add_version};

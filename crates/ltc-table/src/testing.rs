@@ -82,6 +82,7 @@ pub fn version(name: &str, number: u32, table: Table) -> TableVersion {
             magnitude_max: 0.0,
             fresnel_mean: 0.0,
             fresnel_max: 0.0,
+            grid: None,
         },
         created: "2026-01-01T00:00:00Z".into(),
         tool: "test".into(),
