@@ -10,7 +10,10 @@ macro_rules! outln {
 }
 
 mod commands;
+mod fit_progress;
+mod interrupt;
 mod json_lines;
+mod picture;
 mod progress;
 mod tables;
 
@@ -60,6 +63,10 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) if error.is::<interrupt::Interrupted>() => {
+            eprintln!("{}", one_line(&error));
+            error.downcast_ref::<interrupt::Interrupted>().map_or(ExitCode::FAILURE, |i| i.exit_code())
+        }
         Err(error) => {
             eprintln!("error: {}", one_line(&error));
             ExitCode::FAILURE

@@ -3,6 +3,9 @@
 //! [`fit`] takes a [`FitSpec`] through four stages: every entry by itself from the medians of its lobe
 //! ([`entries`]), all entries together over random queries between them ([`joint`]), magnitude and Fresnel
 //! ([`channels`]), and the statistics over queries that no stage has seen ([`measure`]).
+//!
+//! It does so piece by piece ([`FitRun`]): between any two pieces its state can be written down, and the fit goes on from
+//! it in another process ([`checkpoint`]) to the very same table. Specifications are read from TOML ([`spec_file`]).
 
 use glam::DVec3;
 
@@ -22,8 +25,9 @@ mod lobe;
 pub mod measure;
 mod plan;
 mod points;
-mod progress;
+pub mod progress;
 mod regular;
+pub mod report;
 mod run;
 mod spec;
 pub mod spec_file;
@@ -41,6 +45,7 @@ pub use lobe::{Brdf, GgxFamily, Lobe};
 pub use plan::{Cost, Limits, Plan};
 pub use points::DiskPoints;
 pub use progress::{Observer, Progress, silent};
+pub use report::FitReport;
 pub use run::{EntryRecord, FitRun, FitState, Fitted, StageTime};
 pub use spec::FitSpec;
 pub use start::median_start;

@@ -9,6 +9,9 @@ pub const CHANNELS: &str = "magnitude and Fresnel";
 /// The stage of [`crate::measure`].
 pub const MEASUREMENT: &str = "measurement";
 
+/// The stage of [`crate::report`].
+pub const REPORT: &str = "report";
+
 /// A report from a running fit.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {

@@ -204,6 +204,9 @@ impl<'a> FitRun<'a> {
         let (plan, done) = (self.plan, self.state.entries.len());
         let which = done..(done + PIECE).min(plan.owners().len());
         let settings = plan.spec().entries;
+        let sum: f64 = self.state.entries.iter().map(|entry| entry.tv).sum();
+        let tv = (done > 0).then(|| sum / done as f64);
+        let observer: Observer<'_> = &|progress| observer(Progress { tv, ..progress });
         let fitted =
             entries::fit_owners(plan.brdf(), plan.lattice(), plan.owners(), which, settings, observer)?;
         self.state.entries.extend(fitted.into_iter().map(EntryRecord::from));
