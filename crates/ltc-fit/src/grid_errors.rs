@@ -6,7 +6,7 @@ use ltc_table::{Axis, Floors, GridErrors, Quantity, Query, Table};
 use rayon::prelude::*;
 
 use crate::{
-    Brdf, DiskPoints, FitError, Lattice, Lobe,
+    Brdf, DiskPoints, FitError, Lattice, Lobe, Node,
     measure::{MEASURE_SHIFT, maximum, mean},
     total_variation,
 };
@@ -33,7 +33,7 @@ pub fn grid_errors(
     samples: usize,
 ) -> Result<GridErrors, FitError> {
     let nodes = node_misses(brdf, table, floors, samples)?;
-    let centres = centre_misses(brdf, table, samples)?;
+    let centres = centre_misses(brdf, table, floors, samples)?;
     let signed = |misses: &[Miss], of: fn(&Miss) -> f64| misses.iter().map(of).collect::<Vec<f64>>();
     let absolute = |misses: &[Miss], of: fn(&Miss) -> f64| {
         let sizes: Vec<f64> = misses.iter().map(|miss| of(miss).abs()).collect();
@@ -84,19 +84,31 @@ pub fn node_misses(
 }
 
 /// What lookups miss at the centres of the cells between entries, in C order of the cells: each axis has one less than
-/// nodes, and a centre is half-way between two nodes in the axis's own mapping.
+/// nodes, and a centre is half-way between two nodes in the axis's own mapping. As at the entries, the BRDF is evaluated
+/// at the floors where the centre is below them.
 ///
 /// # Errors
 /// None for a valid table.
-pub fn centre_misses(brdf: &dyn Brdf, table: &Table, samples: usize) -> Result<Vec<Miss>, FitError> {
+pub fn centre_misses(
+    brdf: &dyn Brdf,
+    table: &Table,
+    floors: &Floors,
+    samples: usize,
+) -> Result<Vec<Miss>, FitError> {
     let points = DiskPoints::new(samples, MEASURE_SHIFT);
     let count: usize = table.axes().iter().map(|axis| axis.len - 1).product();
     (0..count)
         .into_par_iter()
         .map_init(Lobe::default, |lobe, index| {
-            let query = centre(table.axes(), index);
-            brdf.sample_lobe(crate::direction(query.theta, query.phi), query.validate()?, &points, lobe);
-            let found = table.lookup(&query)?;
+            let Node { theta, phi, alpha, lambda } = centre(table.axes(), index);
+            let found = table.lookup(&Query { theta, phi, alpha_x: alpha, alpha_y: alpha * lambda })?;
+            let node = Node {
+                theta: theta.min(floors.theta_max),
+                phi,
+                alpha: alpha.max(floors.alpha),
+                lambda: lambda.max(floors.lambda),
+            };
+            brdf.sample_lobe(node.wo(), node.widths()?, &points, lobe);
             Ok(Miss {
                 tv: total_variation(lobe, DMat3::from_row_array(found.lobes[0].m)),
                 magnitude: found.magnitude - lobe.magnitude,
@@ -106,9 +118,9 @@ pub fn centre_misses(brdf: &dyn Brdf, table: &Table, samples: usize) -> Result<V
         .collect()
 }
 
-/// The query at the centre of a cell.
-fn centre(axes: &[Axis], index: usize) -> Query {
-    let (mut theta, mut phi, mut alpha, mut lambda) = (0.0, 0.0, 1.0, 1.0);
+/// The centre of a cell, floors not applied.
+fn centre(axes: &[Axis], index: usize) -> Node {
+    let mut node = Node { theta: 0.0, phi: 0.0, alpha: 1.0, lambda: 1.0 };
     let mut rest = index;
     for axis in axes.iter().rev() {
         let cell = rest % (axis.len - 1);
@@ -116,13 +128,13 @@ fn centre(axes: &[Axis], index: usize) -> Query {
         let ends = [axis.node(cell), axis.node(cell + 1)].map(|x| axis.mapping.coordinate(x));
         let value = axis.mapping.value(0.5 * (ends[0] + ends[1]));
         match axis.quantity {
-            Quantity::Theta => theta = value,
-            Quantity::Phi => phi = value,
-            Quantity::Alpha => alpha = value,
-            Quantity::Lambda => lambda = value,
+            Quantity::Theta => node.theta = value,
+            Quantity::Phi => node.phi = value,
+            Quantity::Alpha => node.alpha = value,
+            Quantity::Lambda => node.lambda = value,
         }
     }
-    Query { theta, phi, alpha_x: alpha, alpha_y: alpha * lambda }
+    node
 }
 
 #[cfg(test)]
@@ -140,8 +152,8 @@ mod tests {
         ];
         let mut seen = std::collections::BTreeSet::new();
         for index in 0..3 * 2 * 4 {
-            let query = centre(&axes, index);
-            let values = [query.theta, query.phi, query.alpha_x, query.alpha_y / query.alpha_x];
+            let Node { theta, phi, alpha, lambda } = centre(&axes, index);
+            let values = [theta, phi, alpha, lambda];
             let cells = [0, 1, 2, 3].map(|k| {
                 let (cell, within) = axes[k].locate(values[k]);
                 assert!((within - 0.5).abs() < 1e-12, "{index}: {values:?}");

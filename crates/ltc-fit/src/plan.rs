@@ -94,11 +94,13 @@ impl Cost {
     /// size can be asked for. Times are those of one 2020s core, right within a factor of about three.
     pub fn of(spec: &FitSpec) -> Self {
         /// Seconds for each sample of a lobe that is drawn, that is compared with an LTC, and compared with derivatives.
-        const DRAW: f64 = 10e-9;
-        const COMPARE: f64 = 3e-9;
+        const DRAW: f64 = 15e-9;
+        const COMPARE: f64 = 2e-9;
         const DERIVE: f64 = 5e-9;
+        /// Seconds of a joint step besides its samples.
+        const STEP: f64 = 6e-3;
         /// Comparisons that the fit of an entry takes on average.
-        const COMPARISONS: f64 = 45.0;
+        const COMPARISONS: f64 = 110.0;
         /// Bytes for each entry (matrices, starts, moments, their copies and the checkpoint's text), for each query of a
         /// step, and for each row of the channels' equations.
         const PER_ENTRY: u64 = 2500;
@@ -119,7 +121,10 @@ impl Cost {
                 .saturating_add((channels.queries as u64).saturating_mul(PER_ROW)),
             seconds: [
                 (ENTRIES, alone * (DRAW + comparisons * DERIVE)),
-                (JOINT, joint.steps as f64 * product(joint.queries, joint.samples) * (DRAW + DERIVE)),
+                (
+                    JOINT,
+                    joint.steps as f64 * (STEP + product(joint.queries, joint.samples) * (DRAW + DERIVE)),
+                ),
                 (CHANNELS, nodes_and_queries(channels.samples, channels.queries) * DRAW),
                 (
                     MEASUREMENT,

@@ -120,7 +120,7 @@ impl FitReport {
             region
         });
         let samples = plan.spec().measure.samples;
-        let centres = centre_misses(plan.brdf(), &fitted.table, samples)?;
+        let centres = centre_misses(plan.brdf(), &fitted.table, &plan.spec().floors, samples)?;
         Ok(Self {
             name: plan.spec().name.clone(),
             stages: stages(plan, fitted),

@@ -8,7 +8,7 @@ use super::heat_map::{Direction, HeatMap, colour_bar};
 
 /// Room around and between the panels.
 const LEFT: i32 = 84;
-const TOP: i32 = 76;
+const TOP: i32 = 80;
 const BETWEEN: i32 = 90;
 const RIGHT: i32 = 110;
 const BOTTOM: i32 = 72;
@@ -21,10 +21,7 @@ pub fn error_map(title: &str, table: &Table, centre_tv: &[f64]) -> Canvas {
         let ends = axis.nodes().into_iter().map(|x| axis.mapping.coordinate(x)).collect::<Vec<_>>();
         ends.windows(2).map(|w| axis.mapping.value(0.5 * (w[0] + w[1]))).collect()
     };
-    let panels = [
-        panel("at the entries", table.axes(), nodes, &table.cells().tv),
-        panel("at the centres of the cells between them", table.axes(), centres, centre_tv),
-    ];
+    let panels = [panel(table.axes(), nodes, &table.cells().tv), panel(table.axes(), centres, centre_tv)];
     let max = table.cells().tv.iter().chain(centre_tv).copied().fold(0.0, f64::max);
     let scale = ColourScale::to(max);
     let [first, second] = panels.each_ref().map(HeatMap::size);
@@ -32,8 +29,10 @@ pub fn error_map(title: &str, table: &Table, centre_tv: &[f64]) -> Canvas {
     let mut canvas =
         Canvas::new((LEFT + first[0] + BETWEEN + second[0] + RIGHT) as u32, (TOP + height + BOTTOM) as u32);
     canvas.heading([LEFT, 24], Anchor::Left, &format!("{title}: total variation between table and BRDF"));
-    panels[0].draw(&mut canvas, [LEFT, TOP + height - first[1]], &scale);
     let second_left = LEFT + first[0] + BETWEEN;
+    canvas.text([LEFT, TOP - 16], Anchor::Left, &summary("at the entries", &table.cells().tv));
+    canvas.text([second_left, TOP - 16], Anchor::Left, &summary("half-way between entries", centre_tv));
+    panels[0].draw(&mut canvas, [LEFT, TOP + height - first[1]], &scale);
     panels[1].draw(&mut canvas, [second_left, TOP + height - second[1]], &scale);
     colour_bar(&mut canvas, [second_left + second[0] + 24, TOP + height], height, &scale);
     if let Some(tiles) = tile_caption(table.axes()) {
@@ -43,7 +42,7 @@ pub fn error_map(title: &str, table: &Table, centre_tv: &[f64]) -> Canvas {
 }
 
 /// One panel: the numbers over some values of the axes.
-fn panel(title: &str, axes: &[Axis], values: impl Fn(&Axis) -> Vec<f64>, numbers: &[f64]) -> HeatMap {
+fn panel(axes: &[Axis], values: impl Fn(&Axis) -> Vec<f64>, numbers: &[f64]) -> HeatMap {
     let direction = |outer: Option<&Axis>, inner: Option<&Axis>| Direction {
         name: outer.map_or("", |axis| letter(axis.quantity)),
         labels: outer.map_or_else(Vec::new, |axis| {
@@ -53,14 +52,18 @@ fn panel(title: &str, axes: &[Axis], values: impl Fn(&Axis) -> Vec<f64>, numbers
     };
     // θ, α or θ, φ, α, λ: the vertical axes come first, and are the slower ones in the array too.
     let (vertical, horizontal) = axes.split_at(axes.len() / 2);
-    let mean = numbers.iter().sum::<f64>() / numbers.len().max(1) as f64;
-    let max = numbers.iter().copied().fold(0.0, f64::max);
     HeatMap {
-        title: format!("{title}: mean {mean:.4}, largest {max:.3}"),
         vertical: direction(vertical.first(), vertical.get(1)),
         horizontal: direction(horizontal.first(), horizontal.get(1)),
         values: numbers.to_vec(),
     }
+}
+
+/// What stands above a panel.
+fn summary(place: &str, numbers: &[f64]) -> String {
+    let mean = numbers.iter().sum::<f64>() / numbers.len().max(1) as f64;
+    let max = numbers.iter().copied().fold(0.0, f64::max);
+    format!("{place}: mean {mean:.4}, largest {max:.3}")
 }
 
 fn tile_caption(axes: &[Axis]) -> Option<String> {
@@ -84,6 +87,7 @@ fn letter(quantity: Quantity) -> &'static str {
 fn label(quantity: Quantity, value: f64) -> String {
     match quantity {
         Quantity::Theta | Quantity::Phi => format!("{:.0}°", value.to_degrees()),
+        Quantity::Alpha | Quantity::Lambda if value < 0.1 => format!("{value:.3}"),
         Quantity::Alpha | Quantity::Lambda => format!("{value:.2}"),
     }
 }

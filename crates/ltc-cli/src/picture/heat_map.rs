@@ -32,8 +32,6 @@ impl Direction {
 
 /// A grid of numbers, the vertical direction slowest.
 pub struct HeatMap {
-    /// What stands above.
-    pub title: String,
     /// Upwards.
     pub vertical: Direction,
     /// To the right.
@@ -59,7 +57,6 @@ impl HeatMap {
     pub fn draw(&self, canvas: &mut Canvas, [left, top]: [i32; 2], scale: &ColourScale) {
         let [width, height] = self.size();
         let cell = self.cell();
-        canvas.text([left, top - 14], Anchor::Left, &self.title);
         let columns = self.horizontal.cells();
         for (i, value) in self.values.iter().enumerate() {
             let x = left + self.offset(&self.horizontal, i % columns);
@@ -122,7 +119,6 @@ mod tests {
     #[test]
     fn the_first_number_is_at_the_lower_left_and_tiles_are_apart() {
         let map = HeatMap {
-            title: String::new(),
             vertical: direction(2, 2),
             horizontal: direction(2, 3),
             values: (0..24).map(f64::from).collect(),
@@ -142,12 +138,8 @@ mod tests {
 
     #[test]
     fn labels_keep_apart() {
-        let map = HeatMap {
-            title: String::new(),
-            vertical: direction(64, 1),
-            horizontal: direction(64, 1),
-            values: vec![0.0; 64 * 64],
-        };
+        let map =
+            HeatMap { vertical: direction(64, 1), horizontal: direction(64, 1), values: vec![0.0; 64 * 64] };
         let middles: Vec<i32> = map.ticks(&map.horizontal, 42).map(|(x, _)| x).collect();
         assert!(middles.len() > 5 && middles.windows(2).all(|w| w[1] - w[0] >= 42), "{middles:?}");
     }
