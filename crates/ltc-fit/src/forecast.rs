@@ -47,8 +47,8 @@ impl Forecast {
         let within = progress.done as f64 / progress.total.max(1) as f64;
         let known = self.stages.iter().position(|(stage, _)| *stage == progress.stage);
         let done = known.map_or(0.0, |i| {
-            let before: f64 = self.stages[..i].iter().map(|(_, share)| share).sum();
-            (before + self.stages[i].1 * within).clamp(0.0, 1.0)
+            let after: f64 = self.stages[i + 1..].iter().map(|(_, share)| share).sum();
+            (1.0 - after - self.stages[i].1 * (1.0 - within)).clamp(0.0, 1.0)
         });
         let first = *self.first.get_or_insert(Mark { at, done });
         if self.stage != progress.stage {
@@ -96,6 +96,7 @@ mod tests {
         assert_eq!(at(&mut forecast, ENTRIES, 0, 1.0).left, None, "nothing to judge by");
         let middle = at(&mut forecast, ENTRIES, 50, 6.0);
         assert_eq!(middle.done, 0.125);
+        assert_eq!(at(&mut forecast.clone(), "d", 100, 6.0).done, 1.0);
         assert_eq!(middle.stage_left, Some(Duration::from_secs(5)));
         assert_eq!(middle.left, Some(Duration::from_secs(35)));
         let next = at(&mut forecast, JOINT, 50, 21.0);

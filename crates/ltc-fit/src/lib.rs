@@ -12,6 +12,7 @@ use glam::DVec3;
 mod bfgs;
 pub mod channels;
 pub mod checkpoint;
+pub mod diff;
 pub mod draw;
 pub mod entries;
 mod entry;
