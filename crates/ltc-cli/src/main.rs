@@ -67,7 +67,9 @@ fn main() -> ExitCode {
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) if error.is::<interrupt::Interrupted>() => {
             eprintln!("{}", one_line(&error));
-            error.downcast_ref::<interrupt::Interrupted>().map_or(ExitCode::FAILURE, |i| i.exit_code())
+            error
+                .downcast_ref::<interrupt::Interrupted>()
+                .map_or(ExitCode::FAILURE, interrupt::Interrupted::exit_code)
         }
         Err(error) => {
             eprintln!("error: {}", one_line(&error));

@@ -3,7 +3,7 @@
 use ltc_core::InputError;
 use ltc_table::TableError;
 
-use crate::plan::{Cost, Limits};
+use crate::plan::Limits;
 
 /// Why there is no table.
 #[derive(Debug, thiserror::Error)]
@@ -27,12 +27,16 @@ pub enum FitError {
     },
     /// The fit would take more memory or time than it may.
     #[error(
-        "{} entries would take about {} of memory and {} on one core; the limits are {} and {}",
-        cost.entries, bytes(cost.memory), duration(cost.total_seconds()), bytes(limits.memory), duration(limits.seconds)
+        "{entries} entries would take about {} of memory and {} on one core; the limits are {} and {}",
+        bytes(*memory), duration(*seconds), bytes(limits.memory), duration(limits.seconds)
     )]
     TooLarge {
-        /// What it would take.
-        cost: Cost,
+        /// Entries of the table.
+        entries: u64,
+        /// Memory that it would take, bytes.
+        memory: u64,
+        /// Seconds of one core that it would take.
+        seconds: f64,
         /// What it may take.
         limits: Limits,
     },

@@ -142,9 +142,44 @@ impl Cost {
     /// # Errors
     /// [`FitError::TooLarge`], with the estimate, when the cost is above one of the limits.
     pub fn check(&self, limits: &Limits) -> Result<(), FitError> {
-        if self.memory <= limits.memory && self.total_seconds() <= limits.seconds {
+        let (entries, memory, seconds) = (self.entries, self.memory, self.total_seconds());
+        if memory <= limits.memory && seconds <= limits.seconds {
             return Ok(());
         }
-        Err(FitError::TooLarge { cost: *self, limits: *limits })
+        Err(FitError::TooLarge { entries, memory, seconds, limits: *limits })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn costs_grow_with_what_is_asked_for_and_are_refused_above_a_limit() {
+        let spec = FitSpec::preset("ggx-anisotropic").unwrap();
+        let cost = Cost::of(&spec);
+        assert_eq!(cost.entries, 4096);
+        cost.check(&Limits::default()).unwrap();
+        let tight = Limits { seconds: 0.5 * cost.total_seconds(), ..Limits::default() };
+        let refusal = cost.check(&tight).unwrap_err().to_string();
+        assert!(refusal.contains(&format!("{} entries would take about", cost.entries)), "{refusal}");
+        let mut larger = spec.clone();
+        larger.axes.iter_mut().for_each(|axis| axis.len = 4096);
+        let larger = Cost::of(&larger);
+        assert!(larger.memory > 1 << 50 && larger.total_seconds() > 1e9, "{larger:?}");
+        assert!(matches!(larger.check(&Limits::default()), Err(FitError::TooLarge { .. })));
+        let mut longer = spec;
+        longer.joint.steps *= 10;
+        assert!(Cost::of(&longer).total_seconds() > 5.0 * cost.seconds[1].1);
+    }
+
+    #[test]
+    fn a_plan_is_named_by_all_of_its_specification() {
+        let spec = FitSpec::preset("ggx-isotropic").unwrap();
+        let mut other = spec.clone();
+        other.measure.seed += 1;
+        let [a, b, again] = [spec.clone(), other, spec].map(|spec| Plan::new(spec).unwrap().digest());
+        assert_eq!(a, again);
+        assert_ne!(a, b);
     }
 }
