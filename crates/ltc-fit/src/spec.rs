@@ -102,11 +102,19 @@ impl FitSpec {
         self.validate_settings()
     }
 
-    /// Checks every field but the BRDF's name.
+    /// Checks every field, and that the BRDF is `brdf`.
     ///
     /// # Errors
     /// [`FitError::Spec`], naming the field and what is wrong with it.
-    pub(crate) fn validate_settings(&self) -> Result<(), FitError> {
+    pub fn validate_with(&self, brdf: &dyn Brdf) -> Result<(), FitError> {
+        if self.brdf != brdf.name() {
+            let reason = format!("is \"{}\", the BRDF's name is \"{}\"", self.brdf, brdf.name());
+            return Err(FitError::Spec { field: "brdf", reason });
+        }
+        self.validate_settings()
+    }
+
+    fn validate_settings(&self) -> Result<(), FitError> {
         use Quantity::{Alpha, Lambda, Phi, Theta};
         let wrong = |field, reason: String| Err(FitError::Spec { field, reason });
         check_name(&self.name).or_else(|e| wrong("name", e.to_string()))?;
@@ -116,10 +124,11 @@ impl FitSpec {
                 format!("\"{}\" is not known; there is: total_variation", self.objective),
             );
         }
-        for axis in &self.axes {
-            axis.validate().or_else(|e| wrong("axes", e.to_string()))?;
+        const AXES: [&str; 4] = ["axes[0]", "axes[1]", "axes[2]", "axes[3]"];
+        for (axis, field) in self.axes.iter().zip(AXES) {
+            axis.validate().or_else(|e| wrong(field, e.to_string()))?;
             if axis.quantity == Phi && axis.domain != [0.0, FRAC_PI_2] {
-                return wrong("axes", "phi must span [0, π/2]: the symmetries tie its ends".to_owned());
+                return wrong(field, "phi must span [0, π/2]: the symmetries tie its ends".to_owned());
             }
         }
         let quantities: Vec<_> = self.axes.iter().map(|a| a.quantity).collect();
@@ -128,6 +137,12 @@ impl FitSpec {
                 "axes",
                 "must be theta, alpha or theta, phi, alpha, lambda in this order".to_owned(),
             );
+        }
+        /// An array of matrices of more bytes than this is refused when the table is read.
+        const MAX_NODES: u64 = (1 << 30) / 72;
+        let nodes = self.axes.iter().fold(1_u64, |n, axis| n.saturating_mul(axis.len as u64));
+        if nodes > MAX_NODES {
+            return wrong("axes", format!("have {nodes} nodes in all, must have at most {MAX_NODES}"));
         }
         self.validate_numbers()
     }
@@ -208,6 +223,9 @@ mod tests {
         assert!(broken(|s| s.joint.samples = 1).starts_with("joint.samples:"));
         assert!(broken(|s| s.measure.seed = s.joint.seed).starts_with("measure.seed:"));
         assert!(broken(|s| s.axes.swap(0, 1)).starts_with("axes:"));
-        assert!(broken(|s| s.axes[1].domain = [0.1, 1.0]).starts_with("axes:"));
+        assert!(
+            broken(|s| s.axes.iter_mut().for_each(|a| a.len = 4096)).starts_with("axes: have 2814749767")
+        );
+        assert!(broken(|s| s.axes[1].domain = [0.1, 1.0]).starts_with("axes[1]:"));
     }
 }

@@ -101,6 +101,24 @@ fn a_manifest_that_flatters_is_found_out() {
 }
 
 #[test]
+fn tables_are_compared() {
+    let folder = copy_with(|manifest| manifest["licence"] = "MIT".into());
+    let tables = ["--json", "--tables", text(folder.path())];
+    let diff = |a, b| ltc(&[&["diff", a, b], &tables[..]].concat()).json();
+    let same = diff("ggx-isotropic@1", "ggx-isotropic@7");
+    assert_eq!((&same["same_payload"], &same["entries"]["all"]["tv_max"]), (&true.into(), &0.0.into()));
+    assert_eq!(same["manifest"]["licence"], serde_json::json!(["CC0-1.0", "MIT"]));
+    assert_eq!(same["manifest"].as_object().unwrap().len(), 2, "licence and version: {}", same["manifest"]);
+    // Other axes: no entry has a counterpart, lookups have.
+    let other = diff("ggx-isotropic", "ggx-anisotropic");
+    assert!(other["entries"].is_null() && other["same_payload"] == false);
+    let tv = other["lookups"]["tv_mean"].as_f64().unwrap();
+    assert!(tv > 0.001 && tv < 0.1, "{tv}");
+    assert!(ltc(&["diff", "ggx-isotropic", "ggx-anisotropic"]).good().out.contains("their axes differ"));
+    ltc(&["diff", "ggx-isotropic", "nonesuch"]).refused(&["no table named \"nonesuch\""]);
+}
+
+#[test]
 fn damaged_tables_are_refused() {
     let folder = copy_with(|_| ());
     let version = folder.path().join("ggx-isotropic/7");
