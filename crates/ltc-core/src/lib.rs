@@ -44,7 +44,8 @@ pub use frame::ShadingFrame;
 pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
 pub use light::{
-    Horizon, Light, LightSample, Polygon, SampleLight, Sides, TextureFetch, TextureFrame, TexturedPolygon,
+    Cylinder, Disk, Ellipse, Horizon, Light, LightSample, Polygon, SampleLight, Sides, Sphere, TextureFetch,
+    TextureFrame, TexturedPolygon,
 };
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};

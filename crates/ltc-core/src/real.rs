@@ -120,6 +120,8 @@ pub trait Real:
     fn sin_cos(self) -> (Self, Self);
     /// Four-quadrant arc tangent of `self / x`.
     fn atan2(self, x: Self) -> Self;
+    /// Inverse hyperbolic tangent, for |self| < 1.
+    fn atanh(self) -> Self;
     /// The larger; the other one where one is NaN.
     fn max(self, other: Self) -> Self;
     /// The smaller; the other one where one is NaN.
@@ -173,6 +175,10 @@ macro_rules! impl_real {
             #[inline]
             fn atan2(self, x: Self) -> Self {
                 $real::atan2(self, x)
+            }
+            #[inline]
+            fn atanh(self) -> Self {
+                $real::atanh(self)
             }
             #[inline]
             fn max(self, other: Self) -> Self {

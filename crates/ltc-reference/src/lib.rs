@@ -7,7 +7,8 @@
 //! | want | use | typical accuracy |
 //! |---|---|---|
 //! | a lobe over a polygon | [`integrate_polygon`] | the tolerance asked for, down to some 1e-11 |
-//! | the same for an LTC, another way | [`integrate_polygon_boundary`] | the same |
+//! | a lobe over an ellipse, sphere or cylinder | [`integrate_ellipse`], [`integrate_sphere_light`], [`integrate_cylinder`] | the same |
+//! | the polygon for an LTC, another way | [`integrate_polygon_boundary`] | the same |
 //! | GGX and Lambert over a rectangle, fast | [`direct_light`] | unbiased; a large light over a glossy surface: 2e-2 at 64 samples, 2e-3 at 1024 |
 //! | magnitude and Fresnel of a table | [`directional_albedo`] | the tolerance asked for |
 //! | mass of a lobe, leak of an LTC | [`lobe_mass`] | the tolerance asked for |
@@ -34,8 +35,11 @@ mod boundary;
 mod chart;
 mod chi_square;
 mod cubature;
+mod cylinder;
 mod direct;
+mod ellipse;
 mod error;
+mod fan;
 mod ggx;
 mod lobe;
 mod mass;
@@ -45,6 +49,7 @@ mod quadrature;
 mod rect_light;
 mod special;
 mod sphere;
+mod sphere_light;
 mod tv;
 
 pub use albedo::{Albedo, directional_albedo};
@@ -52,7 +57,9 @@ pub use boundary::integrate_polygon_boundary;
 pub use chart::{CapChart, Chart, TransformedChart};
 pub use chi_square::{ChiSquare, ChiSquareOptions, ChiSquareSuite, chi_square, chi_square_unit, sidak};
 pub use cubature::integrate_squares;
+pub use cylinder::{CylinderShape, integrate_cylinder};
 pub use direct::{Direct, direct_light, direct_light_visible, view_direction};
+pub use ellipse::integrate_ellipse;
 pub use error::ReferenceError;
 pub use ggx::Ggx;
 pub use lobe::{AboveHorizon, CosineLobe, GgxLobe, Lobe, LtcLobe, LtcMixture, Scaled};
@@ -62,4 +69,5 @@ pub use polygon::{PolygonOptions, integrate_polygon};
 pub use quadrature::{Estimate, GaussLegendre, Tolerance, integrate_1d};
 pub use rect_light::{LightHit, RectLight};
 pub use sphere::integrate_sphere;
+pub use sphere_light::integrate_sphere_light;
 pub use tv::{ggx_total_variation, total_variation};

@@ -1,14 +1,27 @@
 //! Lights, as a shading point sees them: each file a shape, each shape a closed form.
 
 mod boundary;
+mod cone;
+mod cone_light;
+mod cone_region;
+mod cylinder;
+mod disk;
+mod ellipse;
+mod facing;
 mod horizon;
 mod polygon;
 mod sample;
+mod sphere;
+mod surround;
 mod textured;
 
+pub use cylinder::Cylinder;
+pub use disk::Disk;
+pub use ellipse::Ellipse;
 pub use horizon::Horizon;
 pub use polygon::Polygon;
 pub use sample::{LightSample, SampleLight};
+pub use sphere::Sphere;
 pub use textured::{TextureFetch, TextureFrame, TexturedPolygon};
 
 use crate::{Ltc, Real};
