@@ -2,7 +2,7 @@
 
 use crate::{Real, Vector};
 
-/// How often the root of [`confocal`] is improved at most. Two to four times are usual; more, near the ellipse's rim, do not
+/// How often the root of [`confocal`] is improved at most. One to three times are usual; more, near the ellipse's rim, do not
 /// help against the rounding of the input.
 const MAX_STEPS: usize = 16;
 
@@ -18,22 +18,32 @@ const MAX_STEPS: usize = 16;
 /// and its normal there, g = (x/(λ + r₁²), y/(λ + r₂²), h/λ), is the axis of the cone. All terms are positive: neither
 /// coincident eigenvalues of the cone's quadric nor an ellipse that is seen edge-on, near by or far away cancel digits.
 /// (λ and the two other roots of the cubic are the quadric's eigenvalues.)
+///
+/// The half-axes themselves are not needed. With the unit normal k, c′ the part of c in the plane, u⊥ = k × u, v⊥ = k × v,
+/// q = u⊥ (u⊥·c) + v⊥ (v⊥·c) and D = λ² + λ (u² + v²) + |u × v|², the first two terms are
+/// `(λ c′² + (u⊥·c)² + (v⊥·c)²) / D`, and g = (λ c′ + q)/D + k h/λ.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cone<R: Real> {
-    /// Along the longer half-axis, the shorter one, and the normal on the far side.
-    frame: [R::Vec3; 3],
-    /// r₁ ≥ r₂ > 0.
-    radii: [R; 2],
-    /// (x, y, h) in the frame; h > 0.
-    centre: [R; 3],
+    c: R::Vec3,
+    u: R::Vec3,
+    v: R::Vec3,
+    /// |u × v|
+    area: R,
+    /// Distance of the plane.
+    h: R,
     lambda: R,
-    /// g in the frame, not of unit length.
-    gradient: [R; 3],
+    /// D
+    d: R,
+    /// Not of unit length.
+    g: R::Vec3,
+    /// Its part in the ellipse's plane: near the plane the other one would drown products with u and v in rounding.
+    g_in_plane: R::Vec3,
 }
 
 impl<R: Real> Cone<R> {
-    /// The cone over `c + u cos t + v sin t`, whose largest coordinate should be near 1: squares must not overflow.
-    /// `None` without area.
+    /// The cone over `c + u cos t + v sin t`, whose largest coordinate should be near 1: squares must not overflow. `u × v`
+    /// points away from the origin; where rounding says otherwise the origin is next to the ellipse's plane, on that
+    /// side. `None` without area.
     #[inline]
     pub fn new(c: R::Vec3, u: R::Vec3, v: R::Vec3) -> Option<Self> {
         let cross = u.cross(v);
@@ -43,79 +53,62 @@ impl<R: Real> Cone<R> {
         if !valid {
             return None;
         }
-        let [cos, sin] = longer_half_axis(u.dot(u), v.dot(v), u.dot(v));
-        let along = u * cos + v * sin;
-        let r1 = along.length();
-        let r2 = area / r1;
-        let volume = cross.dot(c);
-        let k = cross * (if volume < R::ZERO { -R::ONE } else { R::ONE } / area);
-        let i = along * (R::ONE / r1);
-        let j = k.cross(i);
+        let k = cross * (R::ONE / area);
         // The floor keeps h/λ in range; it is far below what the rounding of the input leaves of h.
-        let h = (volume.abs() / area).max(R::EPSILON.squared());
-        let (x, y) = (c.dot(i), c.dot(j));
-        let (a, b) = (r1.squared(), r2.squared());
-        let lambda = confocal(a, b, [x.squared(), y.squared(), h.squared()]);
-        let gradient = [x / (lambda + a), y / (lambda + b), h / lambda];
-        Some(Self { frame: [i, j, k], radii: [r1, r2], centre: [x, y, h], lambda, gradient })
-    }
-
-    /// A vector given in the frame.
-    fn vector(&self, [x, y, z]: [R; 3]) -> R::Vec3 {
-        self.frame[0] * x + self.frame[1] * y + self.frame[2] * z
-    }
-
-    /// |g|²
-    fn gradient_squared(&self) -> R {
-        let [x, y, z] = self.gradient;
-        x.squared() + y.squared() + z.squared()
+        let h = c.dot(k).max(R::EPSILON.squared());
+        let in_plane = c - k * h;
+        let (u_turned, v_turned) = (k.cross(u), k.cross(v));
+        let (uc, vc) = (u_turned.dot(c), v_turned.dot(c));
+        let q = u_turned * uc + v_turned * vc;
+        let ellipse = Confocal {
+            trace: u.dot(u) + v.dot(v),
+            determinant: area.squared(),
+            offset: in_plane.dot(in_plane),
+            crossed: uc.squared() + vc.squared(),
+            twice_crossed: q.dot(q),
+            height: h.squared(),
+        };
+        let lambda = ellipse.root();
+        let d = ellipse.denominator(lambda);
+        let g_in_plane = (in_plane * lambda + q) * (R::ONE / d);
+        let g = g_in_plane + k * (h / lambda);
+        Some(Self { c: in_plane + k * h, u, v, area, h, lambda, d, g, g_in_plane })
     }
 
     /// `∫ ω·n / π dω` over the cone, nothing cut.
     ///
     /// The vector irradiance of an elliptical cone of half-widths atan A and atan B lies along its axis and has length
-    /// `AB/√((1 + A²)(1 + B²))`. In confocal terms it is `r₁ r₂ h g / (λ |g|² √((λ + r₁²)(λ + r₂²)))`.
+    /// `AB/√((1 + A²)(1 + B²))`. In confocal terms it is `|u × v| h g / (λ |g|² √D)`.
     #[inline]
-    pub fn uncut(&self, normal: R::Vec3) -> R {
-        let ([r1, r2], h) = (self.radii, self.centre[2]);
-        let root = ((self.lambda + r1.squared()) * (self.lambda + r2.squared())).sqrt();
-        let along = self.vector(self.gradient).dot(normal);
-        r1 * r2 * (h / self.lambda) * along / (self.gradient_squared() * root)
+    pub fn uncut(&self, n: R::Vec3) -> R {
+        self.area * (self.h / self.lambda) * self.g.dot(n) / (self.g.dot(self.g) * self.d.sqrt())
     }
 
     /// The cone's own axes. `None` where rounding leaves nothing of them.
     ///
-    /// The boost that takes the cone's axis to the centre of the cross-section, applied to the half-axes, gives conjugate
-    /// half-axes of the cross-section; one more Jacobi rotation its principal ones.
+    /// (u·g, v·g, 1)/(|g| √λ) is a unit vector of the Lorentz metric; the boost that belongs to it takes u and v to conjugate
+    /// half-axes of the cross-section at right angles to g.
     pub fn axes(&self) -> Option<ConeAxes<R>> {
-        let ([r1, r2], [x, y, h], [gx, gy, gz]) = (self.radii, self.centre, self.gradient);
         let root = self.lambda.sqrt();
-        let length = self.gradient_squared().sqrt();
-        let axis = [gx / length, gy / length, gz / length];
-        let gamma = R::ONE / (length * root);
-        let (bu, bv) = (r1 * gx * gamma, r2 * gy * gamma);
-        let (fu, fv) = (bu / (R::ONE + gamma), bv / (R::ONE + gamma));
-        let u = self.vector([r1 + fu * bu * r1 - bu * x, fu * bv * r2 - bu * y, -bu * h]);
-        let v = self.vector([fv * bu * r1 - bv * x, r2 + fv * bv * r2 - bv * y, -bv * h]);
+        let gamma = R::ONE / (self.g.length() * root);
+        let (bu, bv) = (self.u.dot(self.g_in_plane) * gamma, self.v.dot(self.g_in_plane) * gamma);
+        let shift = (self.u * bu + self.v * bv) * (R::ONE / (R::ONE + gamma)) - self.c;
+        let (u, v) = (self.u + shift * bu, self.v + shift * bv);
+        let e3 = self.g.try_unit()?;
         let [cos, sin] = longer_half_axis(u.dot(u), v.dot(v), u.dot(v));
-        let e3 = self.vector(axis).try_unit()?;
         let longer = u * cos + v * sin;
         // Rounding can leave a little of the axis in a short half-axis.
         let longer = longer - e3 * longer.dot(e3);
         let width = longer.length();
         let e1 = longer.try_unit()?;
-        let widths = [width / root, r1 * r2 * (h / root) / (width * root)];
+        let widths = [width / root, self.area * (self.h / root) / (width * root)];
         let finite = widths.iter().all(|w| w.is_finite());
-        finite.then_some(ConeAxes {
-            widths: [widths[0], widths[1].min(widths[0])],
-            axes: [e1, e3.cross(e1), e3],
-        })
+        finite.then_some(ConeAxes { widths: [widths[0], widths[1].min(widths[0])], axes: [e1, e3.cross(e1), e3] })
     }
 }
 
 /// The weights of u and v in the longer half-axis of the ellipse `u cos t + v sin t`: a Jacobi rotation of the Gram matrix,
 /// divided by its larger entry so that nothing underflows.
-#[inline]
 fn longer_half_axis<R: Real>(uu: R, vv: R, uv: R) -> [R; 2] {
     let (larger, smaller) = if uu >= vv { (uu, vv) } else { (vv, uu) };
     let half_gap = R::of(0.5) * (R::ONE - smaller / larger);
@@ -139,32 +132,55 @@ pub(super) struct ConeAxes<R: Real> {
     pub axes: [R::Vec3; 3],
 }
 
-/// The root λ > 0 of `x²/(λ + a) + y²/(λ + b) + h²/λ = 1` for a ≥ b > 0, h² > 0, given the squares.
-///
-/// The first two terms are replaced by one with the same value and slope; the quadratic that is left has a closed form. For a
-/// circle this is exact at once, and for a distant ellipse nearly so; it converges quadratically.
-#[inline]
-fn confocal<R: Real>(a: R, b: R, [xx, yy, hh]: [R; 3]) -> R {
-    let enough = R::of(0.125) * R::EPSILON.sqrt();
-    let weight = xx + yy;
-    let pole = if weight > R::ZERO { (xx * a + yy * b) / weight } else { a };
-    let mut root = one_pole(weight, pole, hh);
-    for _ in 0..MAX_STEPS {
-        let (ia, ib) = (R::ONE / (root + a), R::ONE / (root + b));
-        let (fx, fy) = (xx * ia, yy * ib);
-        let slope = fx * ia + fy * ib;
-        if slope <= R::ZERO {
-            break;
-        }
-        let distance = (fx + fy) / slope;
-        let next = one_pole((fx + fy) * distance, (distance - root).clamped(b, a), hh);
-        let moved = (next - root).abs();
-        root = next;
-        if moved <= enough * root {
-            break;
-        }
+/// `(λ P + W)/(λ² + λ T + A²) + h²/λ = 1`, with all coefficients ≥ 0; in principal axes P = x² + y², W = r₂²x² + r₁²y²,
+/// T = r₁² + r₂², A = r₁r₂.
+struct Confocal<R: Real> {
+    /// T
+    trace: R,
+    /// A²
+    determinant: R,
+    /// P
+    offset: R,
+    /// W
+    crossed: R,
+    /// r₂⁴x² + r₁⁴y²
+    twice_crossed: R,
+    /// h², above 0
+    height: R,
+}
+
+impl<R: Real> Confocal<R> {
+    #[inline]
+    fn denominator(&self, lambda: R) -> R {
+        lambda * (lambda + self.trace) + self.determinant
     }
-    root
+
+    /// The root λ > 0.
+    ///
+    /// The first term is replaced by `w/(λ + p)` with the same value and slope; the quadratic that is left has a closed form. For
+    /// a circle this is exact at once, for a distant ellipse nearly so; it converges quadratically.
+    #[inline]
+    fn root(&self) -> R {
+        let enough = R::of(0.25) * R::EPSILON.sqrt();
+        let pole = if self.offset > R::ZERO { self.trace - self.crossed / self.offset } else { R::ZERO };
+        let mut root = one_pole(self.offset, pole.max(R::ZERO), self.height);
+        for _ in 0..MAX_STEPS {
+            let numerator = root * self.offset + self.crossed;
+            let slope = root * (root * self.offset + R::of(2.0) * self.crossed) + self.twice_crossed;
+            if slope <= R::ZERO {
+                break;
+            }
+            let weight = numerator / slope;
+            let pole = (self.denominator(root) * weight - root).clamped(R::ZERO, self.trace);
+            let next = one_pole(numerator * weight, pole, self.height);
+            let moved = (next - root).abs();
+            root = next;
+            if moved <= enough * root {
+                break;
+            }
+        }
+        root
+    }
 }
 
 /// The root λ > 0 of `w/(λ + p) + h²/λ = 1`.

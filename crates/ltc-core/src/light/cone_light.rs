@@ -3,11 +3,13 @@
 use super::Horizon;
 use super::cone::Cone;
 use super::cone_region::{ConeRegion, MAX_PLANES};
-use crate::{Ltc, Matrix, Real, Vector};
+use super::facing::Seen;
+use super::spaces::Spaces;
+use crate::{Matrix, Real, Vector};
 
 /// The cone over the ellipse `centre + u cos t + v sin t` of the shading frame, perhaps cut by a plane.
 ///
-/// Which side of the ellipse emits is not its business.
+/// `u × v` points away from the shading point; which side emits is not its business.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ConeLight<R: Real> {
     centre: R::Vec3,
@@ -48,9 +50,17 @@ fn scaled<R: Real>(vectors: [R::Vec3; 3]) -> Option<[R::Vec3; 3]> {
 }
 
 impl<R: Real> ConeLight<R> {
-    /// The whole cone.
+    /// The whole cone; `u × v` points away from the shading point.
     pub fn new(centre: R::Vec3, u: R::Vec3, v: R::Vec3) -> Self {
         Self { centre, u, v, kept: None }
+    }
+
+    /// The cone over a light whose front is where `u × v` points to.
+    pub fn seen(side: Seen, centre: R::Vec3, u: R::Vec3, v: R::Vec3) -> Self {
+        match side {
+            Seen::Front => Self::new(centre, v, u),
+            Seen::Back => Self::new(centre, u, v),
+        }
     }
 
     /// Its part on the side of `normal` of a plane through the shading point.
@@ -59,16 +69,16 @@ impl<R: Real> ConeLight<R> {
     }
 
     /// The fraction of `ltc` in it, between the horizons asked for.
-    pub fn fraction(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
-        self.signed_fraction(ltc, horizon).clamped(R::ZERO, R::ONE)
+    pub fn fraction(&self, spaces: &Spaces<R>, horizon: Horizon) -> R {
+        self.signed_fraction(spaces, horizon).clamped(R::ZERO, R::ONE)
     }
 
     /// The same before it is clamped: a part of a sum. Negative without the cosine's horizon, or by rounding.
-    pub fn signed_fraction(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
-        self.seen_fraction(ltc, horizon).unwrap_or(R::ZERO)
+    pub fn signed_fraction(&self, spaces: &Spaces<R>, horizon: Horizon) -> R {
+        self.seen_fraction(spaces, horizon).unwrap_or(R::ZERO)
     }
 
-    fn seen_fraction(&self, ltc: &Ltc<R>, horizon: Horizon) -> Option<R> {
+    fn seen_fraction(&self, spaces: &Spaces<R>, horizon: Horizon) -> Option<R> {
         let seen = scaled::<R>([self.centre, self.u, self.v])?;
         let surface = match horizon.surface {
             true => place(seen[0].z(), seen[1].z(), seen[2].z()),
@@ -77,7 +87,7 @@ impl<R: Real> ConeLight<R> {
         if surface == Place::Below {
             return None;
         }
-        let [c, u, v] = scaled::<R>(seen.map(|p| ltc.cosine_from_target().apply(p)))?;
+        let [c, u, v] = scaled::<R>(seen.map(|p| spaces.cosine_from_target.apply(p)))?;
         let cosine = if horizon.cosine { place(c.z(), u.z(), v.z()) } else { Place::Above };
         if cosine == Place::Below {
             return None;
@@ -86,16 +96,16 @@ impl<R: Real> ConeLight<R> {
         if surface == Place::Above && cosine == Place::Above && self.kept.is_none() {
             return Some(cone.uncut(up::<R>()));
         }
-        self.cut(&cone, ltc, [surface == Place::Across, cosine == Place::Across])
+        self.cut(&cone, spaces, [surface == Place::Across, cosine == Place::Across])
     }
 
-    fn cut(&self, cone: &Cone<R>, ltc: &Ltc<R>, [surface, cosine]: [bool; 2]) -> Option<R> {
+    fn cut(&self, cone: &Cone<R>, spaces: &Spaces<R>, [surface, cosine]: [bool; 2]) -> Option<R> {
         let axes = cone.axes()?;
         let to_axes =
             |n: R::Vec3| R::Vec3::new(n.dot(axes.axes[0]), n.dot(axes.axes[1]), n.dot(axes.axes[2]));
         let up = to_axes(up::<R>());
         // A plane's normal goes to cosine space by Mᵀ.
-        let back = ltc.target_from_cosine().transposed();
+        let back = spaces.target_from_cosine.transposed();
         let mut normals = [up; MAX_PLANES];
         let mut count = usize::from(cosine);
         let ground = back.apply(self::up::<R>());

@@ -3,10 +3,14 @@
 mod sample;
 mod view;
 
+use core::f64::consts::TAU;
+
 use super::boundary::{BoundarySum, clip_to_surface};
+use super::spaces::Spaces;
 use super::surround::everywhere;
+use super::wide::widened;
 use super::{Horizon, Light};
-use crate::{InputError, Ltc, Real, Vector, check_range};
+use crate::{InputError, Ltc, Real, Vector as _, check_range};
 use view::{Beside, View};
 
 /// A round cylinder of any width, given relative to the shading point in the shading frame.
@@ -57,41 +61,54 @@ impl<R: Real> Cylinder<R> {
     }
 }
 
+impl<R: Real> Cylinder<R> {
+    fn view(&self) -> View {
+        View::of(self.ends.map(widened::<R>), self.radius.to_f64())
+    }
+}
+
+/// In f64 for both precisions; see [`View::of`].
 impl<R: Real> Light<R> for Cylinder<R> {
     fn integrate_within(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
-        match View::of(self.ends, self.radius) {
+        let lobe = Lobe { spaces: Spaces::wide(ltc), horizon };
+        match self.view() {
             View::Nothing => R::ZERO,
             View::Inside(_) if self.caps => everywhere(ltc, horizon),
-            View::InLine(end) if self.caps => end.disk().fraction(ltc, horizon),
-            View::Inside(_) | View::InLine(_) => R::ZERO,
+            View::InLine(end, _) if self.caps => R::of(end.disk().fraction(&lobe.spaces, horizon)),
+            View::Inside(_) | View::InLine(..) => R::ZERO,
             View::Beside(view) => {
-                let ends = view.heights.map(|height| self.end_segment(&view, height, ltc, horizon));
-                (rectangle(&view, ltc, horizon) + ends[0] + ends[1]).clamped(R::ZERO, R::ONE)
+                let ends = view.heights.map(|end| lobe.end_segment(&view, end, self.caps));
+                R::of((lobe.rectangle(&view) + ends[0] + ends[1]).clamped(0.0, 1.0))
             }
         }
     }
 }
 
-impl<R: Real> Cylinder<R> {
-    /// What the end circle at this height along the axis adds to the rectangle between the generators.
-    fn end_segment(&self, view: &Beside<R>, (height, faces): (R, bool), ltc: &Ltc<R>, horizon: Horizon) -> R {
-        let beyond = faces && self.caps;
-        let part =
-            view.end(height).disk().on_side(view.end_plane(height, beyond)).signed_fraction(ltc, horizon);
-        if faces && !self.caps { -part } else { part }
-    }
+/// What is integrated.
+struct Lobe {
+    spaces: Spaces<f64>,
+    horizon: Horizon,
 }
 
-/// What the rectangle between the two generators that are seen edge-on adds.
-fn rectangle<R: Real>(view: &Beside<R>, ltc: &Ltc<R>, horizon: Horizon) -> R {
-    let corners = view.rectangle();
-    let mut sum = BoundarySum::<R>::new(ltc.cosine_from_target(), horizon);
-    if horizon.surface {
-        clip_to_surface::<R>(&corners, |v| sum.push(v));
-    } else {
-        corners.iter().for_each(|v| sum.push(*v));
+impl Lobe {
+    /// What the end circle at this height along the axis adds to the rectangle between the generators.
+    fn end_segment(&self, view: &Beside, (height, faces): (f64, bool), caps: bool) -> f64 {
+        let part = view.end(height).disk().on_side(view.end_plane(height, faces && caps));
+        let fraction = part.signed_fraction(&self.spaces, self.horizon);
+        if faces && !caps { -fraction } else { fraction }
     }
-    // With the nadir inside the sum lacks one turn; a rectangle covers half of the cosine at most.
-    let turns = sum.finish() / (R::of(2.0) * R::PI);
-    if horizon.cosine && turns < R::of(-0.25) { turns + R::ONE } else { turns }
+
+    /// What the rectangle between the two generators that are seen edge-on adds.
+    fn rectangle(&self, view: &Beside) -> f64 {
+        let corners = view.rectangle();
+        let mut sum = BoundarySum::<f64>::new(self.spaces.cosine_from_target, self.horizon);
+        if self.horizon.surface {
+            clip_to_surface::<f64>(&corners, |v| sum.push(v));
+        } else {
+            corners.iter().for_each(|v| sum.push(*v));
+        }
+        // With the nadir inside the sum lacks one turn; a rectangle covers half of the cosine at most.
+        let turns = sum.finish() / TAU;
+        if self.horizon.cosine && turns < -0.25 { turns + 1.0 } else { turns }
+    }
 }

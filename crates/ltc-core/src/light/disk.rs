@@ -2,7 +2,8 @@
 
 use super::cone_light::ConeLight;
 use super::ellipse::Ellipse;
-use super::facing::Normal;
+use super::facing::side_of_normal;
+use super::spaces::Spaces;
 use super::{Horizon, Light, LightSample, SampleLight, Sides};
 use crate::frame::tangent_to;
 use crate::{InputError, Ltc, Real, Vector, check_range};
@@ -27,8 +28,10 @@ use crate::{InputError, Ltc, Real, Vector, check_range};
 #[derive(Clone, Copy, Debug)]
 pub struct Disk<R: Real> {
     centre: R::Vec3,
-    /// Unit length.
+    /// As it was given.
     normal: R::Vec3,
+    /// Of unit length, at right angles to each other and to the normal.
+    across: [R::Vec3; 2],
     radius: R,
     sides: Sides,
 }
@@ -44,26 +47,22 @@ impl<R: Real> Disk<R> {
             return Err(InputError::NotFinite { name: "disk centre or normal" });
         }
         check_range("disk radius", radius.to_f64(), 0.0, f64::MAX)?;
-        let normal = normal.try_unit().ok_or(InputError::Degenerate { name: "disk normal" })?;
-        Ok(Self { centre, normal, radius, sides })
+        let unit = normal.try_unit().ok_or(InputError::Degenerate { name: "disk normal" })?;
+        let tangent = tangent_to::<R>(unit);
+        Ok(Self { centre, normal, across: [tangent, unit.cross(tangent)], radius, sides })
     }
 
     /// The same light as an ellipse.
     pub fn to_ellipse(&self) -> Ellipse<R> {
-        let tangent = tangent_to::<R>(self.normal);
-        let [u, v] = [tangent, self.normal.cross(tangent)].map(|axis| axis * self.radius);
-        Ellipse::of_valid(self.centre, [u, v], self.sides)
+        Ellipse::of_valid(self.centre, self.across.map(|axis| axis * self.radius), self.sides)
     }
 }
 
 impl<R: Real> Light<R> for Disk<R> {
     fn integrate_within(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
-        if !Normal::<R>::given(self.normal).is_seen(self.centre, self.sides) {
-            return R::ZERO;
-        }
-        let tangent = tangent_to::<R>(self.normal);
-        let [u, v] = [tangent, self.normal.cross(tangent)].map(|axis| axis * self.radius);
-        ConeLight::<R>::new(self.centre, u, v).fraction(ltc, horizon)
+        let Some(side) = side_of_normal::<R>(self.centre, self.normal, self.sides) else { return R::ZERO };
+        let [u, v] = self.across.map(|axis| axis * self.radius);
+        ConeLight::seen(side, self.centre, u, v).fraction(&Spaces::of(ltc), horizon)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Elliptical lights: the fraction of a lobe that sees the ellipse, in closed form.
 
 use super::cone_light::ConeLight;
-use super::facing::Normal;
+use super::facing::{Seen, side_of_span};
+use super::spaces::Spaces;
 use super::{Horizon, Light, LightSample, SampleLight, Sides};
 use crate::{InputError, Ltc, Real, Vector};
 
@@ -58,18 +59,16 @@ impl<R: Real> Ellipse<R> {
         (largest > R::ZERO && shrink.is_finite()).then_some((light, largest))
     }
 
-    fn normal(&self) -> Normal<R> {
-        Normal::of_span(self.axes[0], self.axes[1])
+    /// The side that is seen, if any.
+    fn side(&self) -> Option<Seen> {
+        side_of_span::<R>(self.centre, self.axes[0], self.axes[1], self.sides)
     }
 }
 
 impl<R: Real> Light<R> for Ellipse<R> {
     fn integrate_within(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
-        let Some((light, _)) = self.scaled() else { return R::ZERO };
-        if !light.normal().is_seen(light.centre, light.sides) {
-            return R::ZERO;
-        }
-        ConeLight::<R>::new(light.centre, light.axes[0], light.axes[1]).fraction(ltc, horizon)
+        let Some(side) = self.side() else { return R::ZERO };
+        ConeLight::seen(side, self.centre, self.axes[0], self.axes[1]).fraction(&Spaces::of(ltc), horizon)
     }
 }
 
@@ -77,14 +76,11 @@ impl<R: Real> Light<R> for Ellipse<R> {
 impl<R: Real> SampleLight<R> for Ellipse<R> {
     fn sample(&self, u: [R; 2]) -> Option<LightSample<R>> {
         let (light, unit) = self.scaled()?;
-        let normal = light.normal();
-        if !normal.is_seen(light.centre, light.sides) {
-            return None;
-        }
+        self.side()?;
+        let normal = light.axes[0].cross(light.axes[1]);
         let (sin, cos) = (R::of(2.0) * R::PI * u[1]).sin_cos();
         let point = light.centre + (light.axes[0] * cos + light.axes[1] * sin) * u[0].sqrt();
-        let area = R::PI * normal.vector.length();
-        let sample = LightSample::of_area(point, normal.vector.try_unit()?, area)?;
+        let sample = LightSample::of_area(point, normal.try_unit()?, R::PI * normal.length())?;
         Some(LightSample { distance: sample.distance * unit, ..sample })
     }
 
@@ -96,11 +92,8 @@ impl<R: Real> SampleLight<R> for Ellipse<R> {
 impl<R: Real> Ellipse<R> {
     fn pdf_if_hit(&self, wi: R::Vec3) -> Option<R> {
         let (light, _) = self.scaled()?;
-        let normal = light.normal();
-        if !normal.is_seen(light.centre, light.sides) {
-            return None;
-        }
-        let n = normal.vector;
+        self.side()?;
+        let n = light.axes[0].cross(light.axes[1]);
         let t = n.dot(light.centre) / n.dot(wi);
         if !(t > R::ZERO && t.is_finite()) {
             return None;

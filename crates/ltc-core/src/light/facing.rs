@@ -1,46 +1,62 @@
 //! On which side of a flat light the shading point is.
 
+use glam::DVec3;
+
 use super::Sides;
-use crate::{Real, Vector};
+use super::wide::{shrink, widened};
+use crate::Real;
 
-/// A vector and, for each component, the sum of the magnitudes that went into it.
-pub(super) struct Normal<R: Real> {
-    pub vector: R::Vec3,
-    pub magnitude: R::Vec3,
+/// Three vectors in f64 over a common power of two.
+#[inline]
+fn scaled<R: Real>(vectors: [R::Vec3; 3]) -> Option<[DVec3; 3]> {
+    let wide = vectors.map(widened::<R>);
+    let largest = wide.iter().fold(0.0_f64, |m, v| m.max(v.abs().max_element()));
+    let factor = shrink(largest)?;
+    Some(wide.map(|v| v * factor))
 }
 
-impl<R: Real> Normal<R> {
-    /// A normal that was given, not computed.
-    #[inline]
-    pub fn given(vector: R::Vec3) -> Self {
-        let magnitude = R::Vec3::new(vector.x().abs(), vector.y().abs(), vector.z().abs());
-        Self { vector, magnitude }
-    }
+/// Which side of a flat light is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Seen {
+    /// The one that its normal points to.
+    Front,
+    /// The other one, of a light that emits there, too.
+    Back,
+}
 
-    /// `u × v`
-    #[inline]
-    pub fn of_span(u: R::Vec3, v: R::Vec3) -> Self {
-        let sum = |a: R, b: R, c: R, d: R| (a * b).abs() + (c * d).abs();
-        let magnitude = R::Vec3::new(
-            sum(u.y(), v.z(), u.z(), v.y()),
-            sum(u.z(), v.x(), u.x(), v.z()),
-            sum(u.x(), v.y(), u.y(), v.x()),
-        );
-        Self { vector: u.cross(v), magnitude }
-    }
+/// From which side the origin sees a light through `point` that faces along `u × v`, if at all.
+///
+/// Never from its own plane: where the rounding of the input to its precision decides the side, the light is edge-on. That is
+/// judged component by component: a light that lies along the axes may be as close to the shading point as it likes.
+#[inline]
+pub(super) fn side_of_span<R: Real>(point: R::Vec3, u: R::Vec3, v: R::Vec3, sides: Sides) -> Option<Seen> {
+    let [p, u, v] = scaled::<R>([point, u, v])?;
+    let (a, b) = (u.abs(), v.abs());
+    let magnitude =
+        DVec3::new(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x).dot(p.abs());
+    side::<R>(u.cross(v).dot(p), magnitude, sides)
+}
 
-    /// Whether a light through `point` that faces along the normal is seen from the origin.
-    ///
-    /// Never from its own plane: where rounding, of the input or in here, decides the side, the light is seen edge-on. That
-    /// is judged component by component, so that a light that lies along the axes may be as close as it likes.
-    #[inline]
-    pub fn is_seen(&self, point: R::Vec3, sides: Sides) -> bool {
-        let p = R::Vec3::new(point.x().abs(), point.y().abs(), point.z().abs());
-        let rounding = R::of(4.0) * R::EPSILON * self.magnitude.dot(p);
-        let behind = self.vector.dot(point);
-        match sides {
-            Sides::One => behind < -rounding,
-            Sides::Two => behind.abs() > rounding,
-        }
+/// The same for a light that faces along `normal`.
+#[inline]
+pub(super) fn side_of_normal<R: Real>(point: R::Vec3, normal: R::Vec3, sides: Sides) -> Option<Seen> {
+    let [p, n, _] = scaled::<R>([point, normal, normal])?;
+    side::<R>(n.dot(p), n.abs().dot(p.abs()), sides)
+}
+
+/// From a product that is positive behind the light, and the sum of the magnitudes of its terms.
+#[inline]
+fn side<R: Real>(behind: f64, magnitude: f64, sides: Sides) -> Option<Seen> {
+    // Three factors rounded to half an ε at random; and what evaluating the product in f64 adds.
+    let rounding = magnitude * (R::EPSILON.to_f64() * ROUNDING + 3.0 * f64::EPSILON);
+    if behind < -rounding {
+        Some(Seen::Front)
+    } else if behind > rounding && sides == Sides::Two {
+        Some(Seen::Back)
+    } else {
+        None
     }
 }
+
+/// How many ε of the input's precision rounding can move the product: 1.5 at worst, rarely above this.
+const ROUNDING: f64 = 0.75;

@@ -11,9 +11,11 @@ mod facing;
 mod horizon;
 mod polygon;
 mod sample;
+mod spaces;
 mod sphere;
 mod surround;
 mod textured;
+mod wide;
 
 pub use cylinder::Cylinder;
 pub use disk::Disk;

@@ -1,7 +1,9 @@
 //! Spherical lights: the fraction of a lobe that sees the sphere, in closed form.
 
 use super::cone_light::ConeLight;
+use super::spaces::Spaces;
 use super::surround::everywhere;
+use super::wide::{narrowed, shrink, widened};
 use super::{Horizon, Light, LightSample, SampleLight};
 use crate::frame::tangent_to;
 use crate::{InputError, Ltc, Real, Vector, check_range};
@@ -59,11 +61,13 @@ impl<R: Real> Sphere<R> {
         Ok(Self { centre, radius })
     }
 
-    /// In lengths over the largest of centre and radius. `None` for radius 0.
+    /// In lengths over a power of two near the largest of centre and radius. `None` for radius 0. In f64: from near the
+    /// surface, d − r decides.
     fn view(&self) -> Option<View<R>> {
-        let shrink = R::ONE / self.centre.max_abs().max(self.radius);
-        let (centre, radius) = (self.centre * shrink, self.radius * shrink);
-        if !(radius > R::ZERO && shrink.is_finite()) {
+        let (centre, radius) = (widened::<R>(self.centre), self.radius.to_f64());
+        let factor = shrink(centre.abs().max_element().max(radius))?;
+        let (centre, radius) = (centre * factor, radius * factor);
+        if radius <= 0.0 {
             return None;
         }
         let distance = centre.length();
@@ -71,8 +75,12 @@ impl<R: Real> Sphere<R> {
             return Some(View::Inside);
         }
         let tangent = ((distance - radius) * (distance + radius)).sqrt();
-        let towards = centre * (R::ONE / distance);
-        Some(View::Outside(Outside { towards, distance, radius, tangent }))
+        Some(View::Outside(Outside {
+            towards: narrowed::<R>(centre / distance),
+            distance: R::of(distance),
+            radius: R::of(radius),
+            tangent: R::of(tangent),
+        }))
     }
 }
 
@@ -84,7 +92,8 @@ impl<R: Real> Light<R> for Sphere<R> {
             Some(View::Outside(seen)) => {
                 let tangent = tangent_to::<R>(seen.towards);
                 let [u, v] = [tangent, seen.towards.cross(tangent)].map(|axis| axis * seen.radius);
-                ConeLight::<R>::new(seen.towards * seen.tangent, u, v).fraction(ltc, horizon)
+                let cone = ConeLight::<R>::new(seen.towards * seen.tangent, u, v);
+                cone.fraction(&Spaces::of(ltc), horizon)
             }
         }
     }
