@@ -32,7 +32,7 @@ fn write(folder: &Path) -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all(folder.join("images"))?;
     std::fs::write(folder.join("images/stability.svg"), chart(&page))?;
     std::fs::write(folder.join("stability.md"), page.markdown(COMMAND, &machine()))?;
-    for fault in page.faults(1e-9) {
+    for fault in page.faults() {
         println!("{fault}");
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! One lobe and one light.
 
 use glam::DMat3;
-use ltc_core::{AnyLight, Horizon, InputError, Ltc, Matrix, Real};
+use ltc_core::{AnyLight, Horizon, InputError, Light as _, Ltc, Matrix, Quad, Real, Vector as _};
 
 /// A lobe and a light whose numbers are all exact in `f32`, so that every precision has the same input.
 #[derive(Clone, Debug)]
@@ -10,6 +10,8 @@ pub struct Case {
     pub m: [f64; 9],
     /// The light.
     pub light: AnyLight,
+    /// Whether a polygon of four vertices is evaluated as a [`Quad`].
+    pub as_quad: bool,
 }
 
 fn rounded(x: f64) -> f64 {
@@ -22,7 +24,7 @@ fn rounded_point(p: [f64; 3]) -> [f64; 3] {
 
 impl Case {
     /// The case with every number rounded to `f32`.
-    pub fn new(m: DMat3, light: AnyLight) -> Self {
+    pub fn new(m: DMat3, light: AnyLight, as_quad: bool) -> Self {
         let p = rounded_point;
         let light = match light {
             AnyLight::Polygon { vertices, sides } => {
@@ -47,7 +49,7 @@ impl Case {
                 AnyLight::Sphere { center: p(center), radius: rounded(radius) }
             }
         };
-        Self { m: m.to_row_array().map(rounded), light }
+        Self { m: m.to_row_array().map(rounded), light, as_quad }
     }
 
     /// The fraction of the lobe that sees the light, computed in `R`.
@@ -56,7 +58,15 @@ impl Case {
     /// Those of [`Ltc::new`] and [`AnyLight::integrate`].
     pub fn fraction<R: Real>(&self) -> Result<f64, InputError> {
         let ltc = Ltc::<R>::new(R::Mat3::from_row_array(self.m.map(R::of)))?;
-        Ok(self.light.integrate(&ltc, Horizon::BOTH)?.to_f64())
+        let value = match &self.light {
+            AnyLight::Polygon { vertices, sides } if self.as_quad => {
+                let corner = |i: usize| vertices.get(i).copied().unwrap_or_default().map(R::of);
+                let corners = [0, 1, 2, 3].map(corner).map(|[x, y, z]| R::Vec3::new(x, y, z));
+                Quad::new(corners, *sides)?.integrate(&ltc)
+            }
+            light => light.integrate(&ltc, Horizon::BOTH)?,
+        };
+        Ok(value.to_f64())
     }
 
     /// Condition number of `M`.

@@ -8,6 +8,8 @@ use ltc_core::{AnyLight, Sides};
 pub enum Form {
     /// A rectangle, as a polygon of four vertices.
     Polygon,
+    /// The same, as a quad.
+    Quad,
     /// A thin tube by the line approximation.
     Line,
     /// A thin rectangle by the line approximation.
@@ -41,8 +43,9 @@ pub struct Pose {
 
 impl Form {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Polygon,
+        Self::Quad,
         Self::Line,
         Self::Strip,
         Self::Tube,
@@ -56,6 +59,7 @@ impl Form {
     pub fn name(self) -> &'static str {
         match self {
             Self::Polygon => "polygon",
+            Self::Quad => "quad",
             Self::Line => "line",
             Self::Strip => "strip",
             Self::Tube => "tube",
@@ -87,7 +91,7 @@ impl Form {
         let (p0, p1) = ((centre - u).to_array(), (centre + u).to_array());
         let (center, normal, sides) = (centre.to_array(), normal.to_array(), Sides::Two);
         match self {
-            Self::Polygon => {
+            Self::Polygon | Self::Quad => {
                 let corners = [centre - u - v, centre + u - v, centre + u + v, centre - u + v];
                 AnyLight::Polygon { vertices: corners.map(|p| p.to_array()).to_vec(), sides }
             }

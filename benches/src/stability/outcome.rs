@@ -2,25 +2,32 @@
 
 use ltc_core::{Real, points::SplitMix64};
 
-use super::{Case, Form, Sweep};
-use crate::DoubleDouble;
+use super::{Case, Form, Sweep, oracle};
 
-/// What `f32` may be off by, absolutely: `at_most · max(1, cond(M)/100)`.
+/// What a shape may be off by, absolutely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound {
-    /// The bound where cond(M) ≤ 100.
-    pub at_most: f64,
+    /// Of `f32`, where cond(M) ≤ 100; beyond, times cond(M)/100.
+    pub f32_at_most: f64,
+    /// Of `f64`.
+    pub f64_at_most: f64,
 }
 
 impl Bound {
     /// The bound that the documents of a shape state.
     pub fn of(form: Form) -> Self {
-        Self { at_most: if form == Form::Polygon { 2e-5 } else { 1e-4 } }
+        let [f32_at_most, f64_at_most] = match form {
+            Form::Polygon | Form::Quad => [2e-5, 1e-9],
+            Form::Line | Form::Strip => [1e-4, 1e-9],
+            Form::Disk | Form::Ellipse | Form::Sphere => [1e-4, 1e-8],
+            Form::Tube | Form::Cylinder => [1e-4, 1e-6],
+        };
+        Self { f32_at_most, f64_at_most }
     }
 
-    /// At this condition number.
+    /// That of `f32` at this condition number.
     pub fn at(self, condition: f64) -> f64 {
-        self.at_most * (condition / 100.0).max(1.0)
+        self.f32_at_most * (condition / 100.0).max(1.0)
     }
 }
 
@@ -53,7 +60,7 @@ impl Outcome {
     }
 
     fn add(&mut self, case: &Case, bound: Bound) {
-        let exact = fraction::<DoubleDouble>(case);
+        let exact = oracle(case);
         let off = |value: f64| {
             let error = (value - exact).abs();
             if error.is_finite() { error } else { f64::INFINITY }

@@ -72,13 +72,13 @@ impl Page {
         worst
     }
 
-    /// Shapes that exceed their bound or `f64_bound`, in words.
-    pub fn faults(&self, f64_bound: f64) -> Vec<String> {
+    /// Shapes that exceed their [`Bound`], in words.
+    pub fn faults(&self) -> Vec<String> {
         let mut faults = Vec::new();
         for (sweep, values, outcomes) in &self.sweeps {
             for (value, row) in values.iter().zip(outcomes) {
                 for (form, o) in Form::ALL.iter().zip(row) {
-                    if o.f32_share > 1.0 || o.f64_max > f64_bound {
+                    if o.f32_share > 1.0 || o.f64_max > Bound::of(*form).f64_at_most {
                         faults.push(format!(
                             "{}, {} {value:e}: f32 {:.1e} ({:.2} of {:?}), f64 {:.1e}",
                             form.name(),
@@ -101,16 +101,14 @@ fn table(page: &mut String, sweep: Sweep, values: &[f64], outcomes: &[Vec<Outcom
     let names: Vec<_> = Form::ALL.iter().map(|form| form.name()).collect();
     let _ = writeln!(page, "| | {} |\n|---{}|", names.join(" | "), "|---".repeat(names.len()));
     for (value, row) in values.iter().zip(outcomes) {
-        let cells: Vec<String> = row
-            .iter()
-            .map(|o| format!("{:.0e} ({:.0e}), {:.0e}", o.f32_max, o.f32_rms, o.f64_max))
-            .collect();
+        let cells: Vec<String> =
+            row.iter().map(|o| format!("{:.0e} ({:.0e}), {:.0e}", o.f32_max, o.f32_rms, o.f64_max)).collect();
         let _ = writeln!(page, "| {value} | {} |", cells.join(" | "));
     }
 }
 
-const COLOURS: [&str; 8] =
-    ["#1f77b4", "#d62728", "#ff7f0e", "#2ca02c", "#9467bd", "#8c564b", "#e377c2", "#17becf"];
+const COLOURS: [&str; 9] =
+    ["#111111", "#1f77b4", "#d62728", "#ff7f0e", "#2ca02c", "#9467bd", "#8c564b", "#e377c2", "#17becf"];
 const PANEL: [f64; 2] = [380.0, 270.0];
 /// Errors from 1e-18 to 1.
 const DECADES: f64 = 18.0;
@@ -172,7 +170,8 @@ fn panel(svg: &mut String, [left, top]: [f64; 2], sweep: Sweep, values: &[f64], 
         );
     }
     for (i, colour) in COLOURS.iter().enumerate() {
-        for (dash, error) in [("", (|o: &Outcome| o.f32_max) as fn(&Outcome) -> f64), ("5 4", |o| o.f64_max)] {
+        for (dash, error) in [("", (|o: &Outcome| o.f32_max) as fn(&Outcome) -> f64), ("5 4", |o| o.f64_max)]
+        {
             let points: Vec<String> = values
                 .iter()
                 .zip(outcomes)

@@ -66,9 +66,13 @@ impl Sweep {
         let m = turn * DMat3::from_diagonal(DVec3::new(alpha, alpha * rng.range(0.5, 1.0), 1.0));
         let pose = self.pose(value, aspect, form, turn.z_axis, rng);
         let scale = at(Self::Scale, 1.0);
-        let scaled =
-            Pose { centre: pose.centre * scale, length: pose.length * scale, width: pose.width * scale, ..pose };
-        Case::new(m, form.light(&scaled))
+        let scaled = Pose {
+            centre: pose.centre * scale,
+            length: pose.length * scale,
+            width: pose.width * scale,
+            ..pose
+        };
+        Case::new(m, form.light(&scaled), form == Form::Quad)
     }
 
     /// A light near the lobe's direction, or with its surface near the shading point.
@@ -86,7 +90,9 @@ impl Sweep {
             Self::Distance => {
                 let depth = form.thickness(&pose) + value;
                 let beside = if form == Form::Sphere { 0.0 } else { 1.5 };
-                normal * -depth + along * (beside * shift.x * length) + side * self.sideways(form, shift.y, width)
+                normal * -depth
+                    + along * (beside * shift.x * length)
+                    + side * self.sideways(form, shift.y, width)
             }
             Self::Farness => (lobe + shift * 0.3) * (value + 1.0),
             _ => (lobe + shift * 0.5) * 2.5,

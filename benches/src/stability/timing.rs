@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use glam::DMat3;
 use ltc_core::{
-    AnyLight, Cylinder, Disk, Ellipse, InputError, Light, Line, Ltc, Matrix, Polygon, Real, Sphere, Strip,
-    Vector, points::SplitMix64,
+    AnyLight, Cylinder, Disk, Ellipse, InputError, Light, Line, Ltc, Matrix, Polygon, Quad, Real, Sides,
+    Sphere, Strip, Vector, points::SplitMix64,
 };
 
 use super::{Form, Sweep};
@@ -29,7 +29,10 @@ pub fn nanoseconds<R: Real>(form: Form) -> Result<f64, InputError> {
     let corners: Vec<Vec<R::Vec3>> = lights.iter().map(|light| corners::<R>(light)).collect();
     let mut shapes: Vec<Box<dyn Light<R> + '_>> = Vec::with_capacity(COUNT);
     for (light, corners) in lights.iter().zip(&corners) {
-        shapes.push(shape(light, corners)?);
+        shapes.push(match corners[..] {
+            [a, b, c, d] if form == Form::Quad => Box::new(Quad::new([a, b, c, d], Sides::Two)?),
+            _ => shape(light, corners)?,
+        });
     }
     let mut best = f64::INFINITY;
     for _ in 0..ROUNDS {

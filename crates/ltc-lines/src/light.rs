@@ -57,9 +57,7 @@ impl From<LightLine> for AnyLight {
     fn from(light: LightLine) -> Self {
         let sides = |two_sided| if two_sided { Sides::Two } else { Sides::One };
         match light {
-            LightLine::Polygon { vertices, two_sided } => {
-                Self::Polygon { vertices, sides: sides(two_sided) }
-            }
+            LightLine::Polygon { vertices, two_sided } => Self::Polygon { vertices, sides: sides(two_sided) },
             LightLine::Line { p0, p1, radius } => Self::Line { p0, p1, radius },
             LightLine::Strip { p0, p1, width, normal, two_sided } => {
                 Self::Strip { p0, p1, width, normal, sides: sides(two_sided) }

@@ -18,8 +18,28 @@ const SEEDS: [&str; 8] = [
 ];
 
 const PIECES: [&str; 22] = [
-    "0", "-1", "1e308", "1e-320", "1e999", "null", "true", "[]", "{}", "[", "}", ",", ":", "\"", "\\", "NaN",
-    "\"type\":\"disk\"", "0.5", "1e30", "-1e-40", "\u{fffd}", "\"m\":[1,2,3]",
+    "0",
+    "-1",
+    "1e308",
+    "1e-320",
+    "1e999",
+    "null",
+    "true",
+    "[]",
+    "{}",
+    "[",
+    "}",
+    ",",
+    ":",
+    "\"",
+    "\\",
+    "NaN",
+    "\"type\":\"disk\"",
+    "0.5",
+    "1e30",
+    "-1e-40",
+    "\u{fffd}",
+    "\"m\":[1,2,3]",
 ];
 
 /// One to four pieces of a line replaced, cut, doubled or swapped for pieces of others.

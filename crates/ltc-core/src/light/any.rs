@@ -76,7 +76,9 @@ impl AnyLight {
             Self::Ellipse { center, axis_u, axis_v, sides } => {
                 Ellipse::new(v(center), v(axis_u), v(axis_v), *sides)?.integrate_within(ltc, horizon)
             }
-            Self::Sphere { center, radius } => Sphere::new(v(center), r(radius))?.integrate_within(ltc, horizon),
+            Self::Sphere { center, radius } => {
+                Sphere::new(v(center), r(radius))?.integrate_within(ltc, horizon)
+            }
         })
     }
 }

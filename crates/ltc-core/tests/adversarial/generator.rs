@@ -77,17 +77,7 @@ impl<'a> Generator<'a> {
         let (theta, phi) = (1.6 * self.unit(), 6.3 * self.unit());
         let ((st, ct), (sp, cp)) = (theta.sin_cos(), phi.sin_cos());
         let shear = if self.below(2) == 0 { 0.0 } else { 2.0 * self.unit() - 1.0 };
-        [
-            cp * ct * a,
-            -sp * b + shear * a,
-            cp * st,
-            sp * ct * a,
-            cp * b,
-            sp * st,
-            -st * a,
-            0.0,
-            ct,
-        ]
+        [cp * ct * a, -sp * b + shear * a, cp * st, sp * ct * a, cp * b, sp * st, -st * a, 0.0, ct]
     }
 
     /// Anything at all.
@@ -125,12 +115,9 @@ impl<'a> Generator<'a> {
                 caps: sides == Sides::Two,
             },
             4 => AnyLight::Disk { center: self.point(), normal: self.point(), radius: radius(self), sides },
-            5 => AnyLight::Ellipse {
-                center: self.point(),
-                axis_u: self.point(),
-                axis_v: self.point(),
-                sides,
-            },
+            5 => {
+                AnyLight::Ellipse { center: self.point(), axis_u: self.point(), axis_v: self.point(), sides }
+            }
             _ => AnyLight::Sphere { center: self.point(), radius: radius(self) },
         }
     }

@@ -114,8 +114,7 @@ fn a_light_cut_in_two_sums_to_the_whole() {
         let line = |p0, p1| seen(&AnyLight::Line { p0, p1, radius: 1e-3 });
         assert_same(line(a, b), line(a, p) + line(p, b), "line", seed);
         let normal = [0.3, -0.5, 0.8];
-        let strip =
-            |p0, p1| seen(&AnyLight::Strip { p0, p1, width: 1e-3, normal, sides: Sides::Two });
+        let strip = |p0, p1| seen(&AnyLight::Strip { p0, p1, width: 1e-3, normal, sides: Sides::Two });
         assert_same(strip(a, b), strip(a, p) + strip(p, b), "strip", seed);
     });
 }
@@ -123,9 +122,8 @@ fn a_light_cut_in_two_sums_to_the_whole() {
 #[test]
 fn turning_scaling_and_renumbering_change_nothing() {
     in_parallel(LAWFUL, |seed| {
-        let (Moderate { m, corners }, turn, scale) = with_generator(seed, |g| {
-            (moderate(g), 6.3 * g.unit(), 10f64.powf(12.0 * g.unit() - 6.0))
-        });
+        let (Moderate { m, corners }, turn, scale) =
+            with_generator(seed, |g| (moderate(g), 6.3 * g.unit(), 10f64.powf(12.0 * g.unit() - 6.0)));
         let (s, c) = turn.sin_cos();
         let turned = |[x, y, z]: [f64; 3]| [c * x - s * y, s * x + c * y, z];
         let mut turned_m = m;
