@@ -30,6 +30,7 @@
 //! ```
 
 mod albedo;
+mod bins;
 mod boundary;
 mod chart;
 mod chi_square;
@@ -45,6 +46,7 @@ mod quadrature;
 mod rect_light;
 mod special;
 mod sphere;
+mod transformed;
 mod tv;
 
 pub use albedo::{Albedo, directional_albedo};
@@ -62,4 +64,5 @@ pub use polygon::{PolygonOptions, integrate_polygon};
 pub use quadrature::{Estimate, GaussLegendre, Tolerance, integrate_1d};
 pub use rect_light::{LightHit, RectLight};
 pub use sphere::integrate_sphere;
+pub use transformed::{BaseShape, TransformedLobe};
 pub use tv::{ggx_total_variation, total_variation};

@@ -3,6 +3,7 @@
 use core::marker::PhantomData;
 
 use super::{Base, Distribution, PolygonBase};
+use crate::light::widen;
 use crate::{Horizon, InputError, Matrix, Polygon, Real, Vector};
 
 /// A base distribution `Do` whose directions are moved by a matrix `M`, `ω = Mωo / ‖Mωo‖`:
@@ -49,16 +50,18 @@ impl<R: Real, B: Base<R>> LinearlyTransformed<R, B> {
             return Err(InputError::SingularMatrix { determinant: 0.0 });
         }
         let [c0, c1, c2] = columns.map(|c| R::Vec3::new(c.x() / largest, c.y() / largest, c.z() / largest));
-        let rows = [c1.cross(c2), c2.cross(c0), c0.cross(c1)];
-        let determinant = c0.dot(rows[0]);
-        let inverse_determinant = R::ONE / determinant;
-        let [r0, r1, r2] = rows.map(|r| r * inverse_determinant);
-        // ‖Mω‖ ≤ 3, so no density exceeds 27/π of the inverse determinant.
-        let valid = determinant > R::ZERO
-            && (R::of(32.0) * inverse_determinant).is_finite()
+        // The inverse in f64: of a thin lobe's matrix the cofactors cancel, and f32 would lose its condition number twice.
+        let [w0, w1, w2] = [c0, c1, c2].map(widen::<R>);
+        let rows = [w1.cross(w2), w2.cross(w0), w0.cross(w1)];
+        let determinant = w0.dot(rows[0]);
+        let inverse_determinant = R::of(1.0 / determinant);
+        let [r0, r1, r2] =
+            rows.map(|r| r / determinant).map(|r| R::Vec3::new(R::of(r.x), R::of(r.y), R::of(r.z)));
+        let valid = determinant > 0.0
+            && peak_bound::<R, B>(inverse_determinant).is_finite()
             && [r0, r1, r2].iter().all(|r| r.is_finite());
         if !valid {
-            return Err(InputError::SingularMatrix { determinant: determinant.to_f64() });
+            return Err(InputError::SingularMatrix { determinant });
         }
         Ok(Self {
             target_from_base: R::Mat3::from_columns(c0, c1, c2),
@@ -96,9 +99,11 @@ impl<R: Real, B: Base<R>> LinearlyTransformed<R, B> {
         self.inverse_determinant
     }
 
-    /// Density at the unit direction `w`, in 1/sr.
+    /// Density at the unit direction `w`, in 1/sr. Finite and not negative for every `w`.
     pub fn density(&self, w: R::Vec3) -> R {
-        B::density(self.base_from_target.apply(w), self.inverse_determinant)
+        let density = B::density(self.base_from_target.apply(w), self.inverse_determinant);
+        // M⁻¹w of a matrix that is nearly singular in this precision can cancel to nothing.
+        density.clamped(R::ZERO, peak_bound::<R, B>(self.inverse_determinant))
     }
 
     /// A direction of density [`LinearlyTransformed::density`], from `u` ∈ [0, 1)² (2016 paper, Algorithm 1).
@@ -127,6 +132,11 @@ impl<R: Real, B: Base<R>> LinearlyTransformed<R, B> {
     {
         B::integrate_polygon(self, polygon, horizon)
     }
+}
+
+/// No density exceeds this: ‖M⁻¹ω‖ ≥ ⅓ for a matrix whose largest entry is 1.
+fn peak_bound<R: Real, B: Base<R>>(inverse_determinant: R) -> R {
+    R::of(27.0 * B::PEAK) * inverse_determinant
 }
 
 impl<R: Real, B: Base<R>> Distribution<R> for LinearlyTransformed<R, B> {

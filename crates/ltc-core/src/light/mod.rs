@@ -7,7 +7,7 @@ mod polygon;
 mod sample;
 
 pub use horizon::Horizon;
-pub(crate) use plane::Plane;
+pub(crate) use plane::{Plane, widen};
 pub use polygon::Polygon;
 pub use sample::{LightSample, SampleLight};
 

@@ -1,42 +1,75 @@
 //! The plane of a flat light.
 
+use glam::DVec3;
+
 use super::{Polygon, Sides};
 use crate::{Real, Vector};
 
-/// The plane of a polygon that the shading point sees, in coordinates scaled by `shrink` to an extent of 1.
+/// The plane of a polygon that the shading point sees, in coordinates scaled by `shrink` to an extent between 1 and 2.
+///
+/// In f64 for lights in f32, too: the products of their coordinates are then exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Plane<R: Real> {
-    /// What scales the polygon's largest coordinate to 1.
-    pub shrink: R,
+pub(crate) struct Plane {
+    /// A power of two, so that scaling by it rounds nothing.
+    pub shrink: f64,
     /// Unit normal; the polygon winds counter-clockwise about it.
-    pub normal: R::Vec3,
+    pub normal: DVec3,
     /// Of the plane above the shading point, along the normal. Below 0 where the shading point is in front of it.
-    pub height: R,
+    pub height: f64,
 }
 
-impl<R: Real> Plane<R> {
-    /// `None` for a polygon without area, for one that is seen edge-on or from behind.
+impl Plane {
+    /// `None` for a polygon that is not to be seen: one without area, edge-on or from behind.
     ///
-    /// Newell's vector area, taken about the first vertex so that distant lights keep their digits. A height within 8 ε
-    /// of the extent is rounding: the light is then seen edge-on.
-    pub fn seen(polygon: &Polygon<'_, R>) -> Option<Self> {
-        let vertices = polygon.vertices();
-        let scale = vertices.iter().fold(R::ZERO, |m, v| m.max(v.max_abs()));
-        let shrink = R::ONE / scale;
-        if scale <= R::ZERO || !shrink.is_finite() {
-            return None;
-        }
-        let first = vertices[0] * shrink;
-        let mut area = R::Vec3::new(R::ZERO, R::ZERO, R::ZERO);
-        for pair in vertices[1..].windows(2) {
-            area += (pair[0] * shrink - first).cross(pair[1] * shrink - first);
-        }
-        let normal = area.try_unit()?;
-        let height = normal.dot(first);
+    /// A height within 16 ε of the extent is rounding, the light then seen edge-on; and so is an area of 2 ε of the products
+    /// of sides that it is the sum of.
+    pub fn seen<R: Real>(polygon: &Polygon<'_, R>) -> Option<Self> {
+        let plane = Self::of(polygon)?;
         let visible = match polygon.sides() {
-            Sides::One => height < R::ZERO,
+            Sides::One => plane.height < 0.0,
             Sides::Two => true,
         };
-        (visible && height.abs() > R::of(8.0) * R::EPSILON).then_some(Self { shrink, normal, height })
+        (visible && plane.height.abs() > 16.0 * f64::EPSILON).then_some(plane)
     }
+
+    /// `None` for a polygon without area.
+    fn of<R: Real>(polygon: &Polygon<'_, R>) -> Option<Self> {
+        let vertices = polygon.vertices();
+        let extent = vertices.iter().fold(0.0, |m: f64, v| m.max(v.max_abs().to_f64()));
+        let shrink = 1.0 / power_of_two_below(extent);
+        if !shrink.is_finite() {
+            return None;
+        }
+        // Newell's vector area, taken about the first vertex so that distant lights keep their digits.
+        let first = widen::<R>(vertices[0]) * shrink;
+        let (mut area, mut products, mut longest) = (DVec3::ZERO, 0.0, DVec3::ZERO);
+        for pair in vertices[1..].windows(2) {
+            let [a, b] = [pair[0], pair[1]].map(|v| widen::<R>(v) * shrink - first);
+            area += a.cross(b);
+            products += a.length() * b.length();
+            for side in [a, b] {
+                if side.length_squared() > longest.length_squared() {
+                    longest = side;
+                }
+            }
+        }
+        if area.length() <= 2.0 * f64::EPSILON * products {
+            return None;
+        }
+        // Of a thin polygon the cross products lose the digits along its length: the normal is made orthogonal to that.
+        let rough = area.try_unit()?;
+        let normal = (rough - longest * (rough.dot(longest) / longest.length_squared())).try_unit()?;
+        Some(Self { shrink, normal, height: normal.dot(first) })
+    }
+}
+
+/// `v` in f64.
+pub(crate) fn widen<R: Real>(v: R::Vec3) -> DVec3 {
+    DVec3::new(v.x().to_f64(), v.y().to_f64(), v.z().to_f64())
+}
+
+/// The largest power of two that is not above `value` ≥ 0; 0 below the normal numbers.
+fn power_of_two_below(value: f64) -> f64 {
+    const EXPONENT: u64 = 0x7FF << 52;
+    f64::from_bits(value.to_bits() & EXPONENT)
 }
