@@ -5,11 +5,13 @@ mod horizon;
 mod plane;
 mod polygon;
 mod sample;
+mod textured;
 
 pub use horizon::Horizon;
 pub(crate) use plane::{Plane, widen};
 pub use polygon::Polygon;
 pub use sample::{LightSample, SampleLight};
+pub use textured::{TextureFetch, TextureFrame, TexturedPolygon};
 
 use crate::{Ltc, Real};
 
