@@ -49,7 +49,8 @@ pub use frame::ShadingFrame;
 pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
 pub use light::{
-    Horizon, Light, LightSample, Polygon, SampleLight, Sides, TextureFetch, TextureFrame, TexturedPolygon,
+    Horizon, Light, LightSample, Polygon, PolygonSampler, SampleLight, Sides, TextureFetch, TextureFrame,
+    TexturedPolygon,
 };
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};

@@ -7,7 +7,7 @@ use core::f64::consts::PI;
 use glam::{DMat3, DVec3};
 
 use super::{Base, LinearlyTransformed};
-use crate::light::{Plane, widen};
+use crate::light::{Plane, half_triangle, sum_of_units, widen};
 use crate::{Horizon, Matrix, Polygon, Real, Vector};
 
 /// What the closed forms of the bases are made of, for the polygon in the base's space, wound positively.
@@ -167,37 +167,6 @@ impl Fan {
         let wrapped = if half < -0.5 * PI { half + 2.0 * PI } else { half };
         Region { solid_angle: 2.0 * wrapped, axial_boundary: orientation * (self.axial_boundary + closing) }
     }
-}
-
-/// Half the signed solid angle of a triangle of unit vectors, `atan2(det(a, b, c), 1 + a·b + b·c + c·a)`
-/// (Van Oosterom and Strackee 1983), in (−π, π].
-///
-/// Small triangles and nearly antipodal vertices keep their digits: both arguments are written in the differences or in the sum of
-/// close and of opposite vertices, which are exact.
-fn half_triangle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
-    let (ab, bc, ca) = (a.dot(b), b.dot(c), c.dot(a));
-    // p and q are farthest apart.
-    let (p, q, r, cosine) = if ab <= bc && ab <= ca {
-        (a, b, c, ab)
-    } else if bc <= ca {
-        (b, c, a, bc)
-    } else {
-        (c, a, b, ca)
-    };
-    if cosine > 0.0 {
-        let determinant = r.dot((p - r).cross(q - r));
-        determinant.atan2(1.0 + ab + bc + ca)
-    } else {
-        let sum = sum_of_units(p, q);
-        r.dot(p.cross(sum)).atan2(0.5 * sum.dot(sum) + r.dot(sum))
-    }
-}
-
-/// `a + b` of unit vectors, without what their rounded lengths add: orthogonal to `a − b`.
-fn sum_of_units(a: DVec3, b: DVec3) -> DVec3 {
-    let (sum, difference) = (a + b, a - b);
-    let squared = difference.length_squared();
-    if squared > 0.0 { sum - difference * (sum.dot(difference) / squared) } else { sum }
 }
 
 /// `(a + b)_z (a × b)_z / (1 + a·b)`, with `1 + a·b = |a + b|²/2`; at most 1 in magnitude, 0 for antipodal ends.

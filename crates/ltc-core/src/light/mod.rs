@@ -4,13 +4,19 @@ mod boundary;
 mod horizon;
 mod plane;
 mod polygon;
+mod polygon_sample;
 mod sample;
+mod solid_angle;
+mod spherical_triangle;
 mod textured;
+mod triangulate;
 
 pub use horizon::Horizon;
 pub(crate) use plane::{Plane, widen};
 pub use polygon::Polygon;
+pub use polygon_sample::PolygonSampler;
 pub use sample::{LightSample, SampleLight};
+pub(crate) use solid_angle::{half_triangle, sum_of_units};
 pub use textured::{TextureFetch, TextureFrame, TexturedPolygon};
 
 use crate::{Ltc, Real};

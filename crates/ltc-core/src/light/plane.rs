@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{Polygon, Sides};
 use crate::{Real, Vector};
 
-/// The plane of a polygon that the shading point sees, in coordinates scaled by `shrink` to an extent between 1 and 2.
+/// The plane of a polygon, in coordinates scaled by `shrink` to an extent between 1 and 2.
 ///
 /// In f64 for lights in f32, too: the products of their coordinates are then exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,21 +19,20 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
-    /// `None` for a polygon that is not to be seen: one without area, edge-on or from behind.
-    ///
-    /// A height within 16 ε of the extent is rounding, the light then seen edge-on; and so is an area of 2 ε of the products
-    /// of sides that it is the sum of.
+    /// The plane of a polygon that is to be seen: not of one without area, edge-on or from behind.
     pub fn seen<R: Real>(polygon: &Polygon<'_, R>) -> Option<Self> {
-        let plane = Self::of(polygon)?;
-        let visible = match polygon.sides() {
-            Sides::One => plane.height < 0.0,
-            Sides::Two => true,
-        };
-        (visible && plane.height.abs() > 16.0 * f64::EPSILON).then_some(plane)
+        Self::of(polygon).filter(|plane| plane.shows(polygon.sides()))
     }
 
-    /// `None` for a polygon without area.
-    fn of<R: Real>(polygon: &Polygon<'_, R>) -> Option<Self> {
+    /// Whether the shading point sees an emitting side. A height within 16 ε of the extent is rounding, the light then seen
+    /// edge-on.
+    pub fn shows(&self, sides: Sides) -> bool {
+        self.height.abs() > 16.0 * f64::EPSILON && (sides == Sides::Two || self.height < 0.0)
+    }
+
+    /// `None` for a polygon without area, or with one of 2 ε of the products of sides that it is the sum of: its plane is
+    /// then anyone's guess.
+    pub fn of<R: Real>(polygon: &Polygon<'_, R>) -> Option<Self> {
         let vertices = polygon.vertices();
         let extent = vertices.iter().fold(0.0, |m: f64, v| m.max(v.max_abs().to_f64()));
         let shrink = 1.0 / power_of_two_below(extent);
