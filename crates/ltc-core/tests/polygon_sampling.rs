@@ -53,9 +53,8 @@ fn cap(vertices: &[DVec3]) -> CapChart {
 }
 
 fn test(sampler: &impl SampleLight<f64>, vertices: &[DVec3], seed: u64) -> ChiSquare {
-    let options = ChiSquareOptions { seed, ..ChiSquareOptions::default() };
     // A sample on an edge may be rounded off the light.
-    let options = ChiSquareOptions { allowed_stray: 2, ..options };
+    let options = ChiSquareOptions { samples: 50_000, seed, allowed_stray: 2, ..ChiSquareOptions::default() };
     chi_square(|u| Some(sampler.sample(u)?.wi), |w| sampler.pdf(w), &cap(vertices), options).unwrap()
 }
 
@@ -139,7 +138,7 @@ fn estimates_meet_the_closed_form() {
         let solid = PolygonSampler::by_solid_angle(&polygon).unwrap();
         let area = PolygonSampler::by_area(&polygon).unwrap();
         for sampler in [&solid, &area] {
-            let n = 1 << 16;
+            let n = 1 << 14;
             let weight = |i| {
                 let sample = sampler.sample(r2(i, [0.5, 0.5]))?;
                 let above = if sample.wi.z > 0.0 { ltc.density(sample.wi) } else { 0.0 };
@@ -150,7 +149,7 @@ fn estimates_meet_the_closed_form() {
                 Some(above / sample.pdf)
             };
             let estimate = (0..n).filter_map(weight).sum::<f64>() / n as f64;
-            let tolerance = 3e-3 * closed + 1e-5;
+            let tolerance = 1e-2 * closed + 1e-5;
             // By area a light that nearly touches the point is too wild.
             if name != "square all around" || sampler == &solid {
                 assert!((estimate - closed).abs() < tolerance, "{name}: {estimate} {closed}");

@@ -65,7 +65,7 @@ pub(crate) fn pool(mut bins: Vec<Bin>, min_expected: f64) -> (Vec<Bin>, Bin) {
 /// Bins where both differ much are integrated again, more closely: that makes their expectation better, whichever way it
 /// moves, and spares the others the cost.
 pub(crate) fn counted(
-    density: &impl Fn([f64; 2]) -> f64,
+    density: &dyn Fn([f64; 2]) -> f64,
     bins: [usize; 2],
     samples: f64,
     points: &[[f64; 2]],
@@ -91,8 +91,8 @@ pub(crate) fn counted(
 }
 
 /// Adaptive quadrature of a density that may jump, to a fraction of a sample.
-struct Cubature<'a, F> {
-    density: &'a F,
+struct Cubature<'a> {
+    density: &'a dyn Fn([f64; 2]) -> f64,
     rule: GaussLegendre,
     samples: f64,
 }
@@ -107,7 +107,7 @@ struct Measure {
     bound: f64,
 }
 
-impl<F: Fn([f64; 2]) -> f64> Cubature<'_, F> {
+impl Cubature<'_> {
     /// A box by the 5 × 5 rule.
     fn measure(&self, square: Square) -> Result<Measure, ReferenceError> {
         let ([u0, v0], [du, dv]) = (square.corner, square.side);

@@ -96,7 +96,7 @@ pub fn chi_square(
         let (w, solid_angle) = chart.direction(uv);
         pdf(w) * solid_angle
     };
-    let draw = |u: [f64; 2]| match sample(u) {
+    let mut draw = |u: [f64; 2]| match sample(u) {
         None => Ok(Drawn::Nothing),
         Some(w) if !w.is_finite() => Err(ReferenceError::NonFiniteInput { what: "sampled direction" }),
         Some(w) if (w.length() - 1.0).abs() > UNIT_TOLERANCE => {
@@ -105,7 +105,7 @@ pub fn chi_square(
         Some(w) if pdf(w) > 0.0 => Ok(chart.place(w).map_or(Drawn::Nothing, Drawn::At)),
         Some(_) => Ok(Drawn::Stray),
     };
-    test(draw, density, options)
+    test(&mut draw, &density, options)
 }
 
 /// [`chi_square`] for points of the unit square, `density` per unit area: for samplers of textures and surfaces.
@@ -117,7 +117,7 @@ pub fn chi_square_unit(
     density: impl Fn([f64; 2]) -> f64,
     options: ChiSquareOptions,
 ) -> Result<ChiSquare, ReferenceError> {
-    let draw = |u: [f64; 2]| match sample(u) {
+    let mut draw = |u: [f64; 2]| match sample(u) {
         None => Ok(Drawn::Nothing),
         Some(uv) if !uv.iter().all(|x| x.is_finite()) => {
             Err(ReferenceError::NonFiniteInput { what: "sampled point" })
@@ -126,7 +126,7 @@ pub fn chi_square_unit(
         Some(uv) if density(uv) > 0.0 => Ok(Drawn::At(uv)),
         Some(_) => Ok(Drawn::Stray),
     };
-    test(draw, &density, options)
+    test(&mut draw, &density, options)
 }
 
 /// What became of one sample.
@@ -139,9 +139,10 @@ enum Drawn {
     Stray,
 }
 
+/// Not generic, so that it is compiled once, with this crate's optimisation.
 fn test(
-    mut draw: impl FnMut([f64; 2]) -> Result<Drawn, ReferenceError>,
-    density: impl Fn([f64; 2]) -> f64,
+    draw: &mut dyn FnMut([f64; 2]) -> Result<Drawn, ReferenceError>,
+    density: &dyn Fn([f64; 2]) -> f64,
     options: ChiSquareOptions,
 ) -> Result<ChiSquare, ReferenceError> {
     let samples = f64::from(options.samples);
@@ -154,7 +155,7 @@ fn test(
             Drawn::Stray => stray += 1,
         }
     }
-    let bins = counted(&density, options.bins, samples, &points)?;
+    let bins = counted(density, options.bins, samples, &points)?;
     let mass = bins.iter().map(|bin| bin.expected).sum::<f64>() / samples.max(1.0);
     let outside_bin = Bin { expected: samples * (1.0 - mass), observed: f64::from(outside) };
     // What is outside is never pooled with what is inside: a peak that the quadrature overlooked would hide there.

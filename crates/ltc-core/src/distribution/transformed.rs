@@ -2,6 +2,8 @@
 
 use core::marker::PhantomData;
 
+use glam::DVec3;
+
 use super::{Base, Distribution, PolygonBase};
 use crate::light::widen;
 use crate::{Horizon, InputError, Matrix, Polygon, Real, Vector};
@@ -40,6 +42,7 @@ impl<R: Real, B: Base<R>> LinearlyTransformed<R, B> {
     /// # Errors
     /// [`InputError::NotFinite`] for a NaN or infinite entry; [`InputError::SingularMatrix`] unless det M > 0 and both M⁻¹
     /// and the density are finite in this precision.
+    #[inline]
     pub fn new(target_from_base: R::Mat3) -> Result<Self, InputError> {
         let columns = target_from_base.columns();
         if !columns.iter().all(|c| c.is_finite()) {
@@ -51,12 +54,13 @@ impl<R: Real, B: Base<R>> LinearlyTransformed<R, B> {
         }
         let [c0, c1, c2] = columns.map(|c| R::Vec3::new(c.x() / largest, c.y() / largest, c.z() / largest));
         // The inverse in f64: of a thin lobe's matrix the cofactors cancel, and f32 would lose its condition number twice.
-        let [w0, w1, w2] = [c0, c1, c2].map(widen::<R>);
+        let (w0, w1, w2) = (widen::<R>(c0), widen::<R>(c1), widen::<R>(c2));
         let rows = [w1.cross(w2), w2.cross(w0), w0.cross(w1)];
         let determinant = w0.dot(rows[0]);
-        let inverse_determinant = R::of(1.0 / determinant);
-        let [r0, r1, r2] =
-            rows.map(|r| r / determinant).map(|r| R::Vec3::new(R::of(r.x), R::of(r.y), R::of(r.z)));
+        let inverse = 1.0 / determinant;
+        let inverse_determinant = R::of(inverse);
+        let (r0, r1, r2) =
+            (narrow::<R>(rows[0] * inverse), narrow::<R>(rows[1] * inverse), narrow::<R>(rows[2] * inverse));
         let valid = determinant > 0.0
             && peak_bound::<R, B>(inverse_determinant).is_finite()
             && [r0, r1, r2].iter().all(|r| r.is_finite());
@@ -103,7 +107,7 @@ impl<R: Real, B: Base<R>> LinearlyTransformed<R, B> {
     pub fn density(&self, w: R::Vec3) -> R {
         let density = B::density(self.base_from_target.apply(w), self.inverse_determinant);
         // M⁻¹w of a matrix that is nearly singular in this precision can cancel to nothing.
-        density.clamped(R::ZERO, peak_bound::<R, B>(self.inverse_determinant))
+        if density.is_finite() { density } else { peak_bound::<R, B>(self.inverse_determinant) }
     }
 
     /// A direction of density [`LinearlyTransformed::density`], from `u` ∈ [0, 1)² (2016 paper, Algorithm 1).
@@ -132,6 +136,12 @@ impl<R: Real, B: Base<R>> LinearlyTransformed<R, B> {
     {
         B::integrate_polygon(self, polygon, horizon)
     }
+}
+
+/// `v`, rounded.
+#[inline]
+fn narrow<R: Real>(v: DVec3) -> R::Vec3 {
+    R::Vec3::new(R::of(v.x), R::of(v.y), R::of(v.z))
 }
 
 /// No density exceeds this: ‖M⁻¹ω‖ ≥ ⅓ for a matrix whose largest entry is 1.

@@ -63,6 +63,7 @@ impl Plane {
 }
 
 /// `v` in f64.
+#[inline]
 pub(crate) fn widen<R: Real>(v: R::Vec3) -> DVec3 {
     DVec3::new(v.x().to_f64(), v.y().to_f64(), v.z().to_f64())
 }
