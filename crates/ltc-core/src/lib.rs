@@ -49,8 +49,9 @@ pub use frame::ShadingFrame;
 pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
 pub use light::{
-    Horizon, Light, LightSample, Polygon, PolygonSampler, SampleLight, Sides, TextureFetch, TextureFrame,
-    TexturedPolygon,
+    Cubic, EdgeForm, Exact, Horizon, Light, LightSample, Line, LineCylinder, LineSample, LtcBatch, Polygon,
+    PolygonSampler, PublishedRational, Quad, QuadBatch, Rational, SampleLight, Sides, Strip, TextureFetch,
+    TextureFrame, TexturedPolygon, clipped_sphere, clipped_sphere_fit,
 };
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};

@@ -1,22 +1,43 @@
 //! Lights, as a shading point sees them: each file a shape, each shape a closed form.
 
+mod angle;
+mod batch;
 mod boundary;
+mod convex;
+mod edge_form;
 mod horizon;
+mod lane;
+mod line;
+mod line_cylinder;
 mod plane;
 mod polygon;
 mod polygon_sample;
+mod proxy;
+mod quad;
+mod ring;
 mod sample;
+mod segment;
+mod simd;
 mod solid_angle;
 mod spherical_triangle;
+mod strip;
 mod textured;
 mod triangulate;
 
+pub use batch::{LtcBatch, QuadBatch};
+pub(crate) use boundary::widen;
+pub use edge_form::{Cubic, EdgeForm, Exact, PublishedRational, Rational};
 pub use horizon::Horizon;
-pub(crate) use plane::{Plane, widen};
+pub use line::{Line, LineSample};
+pub use line_cylinder::LineCylinder;
+pub(crate) use plane::Plane;
 pub use polygon::Polygon;
 pub use polygon_sample::PolygonSampler;
+pub use proxy::{clipped_sphere, clipped_sphere_fit};
+pub use quad::Quad;
 pub use sample::{LightSample, SampleLight};
 pub(crate) use solid_angle::{half_triangle, sum_of_units};
+pub use strip::Strip;
 pub use textured::{TextureFetch, TextureFrame, TexturedPolygon};
 
 use crate::{Ltc, Real};

@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 
+use super::boundary::{power_of_two_near_reciprocal, widen};
 use super::{Polygon, Sides};
 use crate::{Real, Vector};
 
-/// The plane of a polygon, in coordinates scaled by `shrink` to an extent between 1 and 2.
+/// The plane of a polygon, in coordinates scaled by `shrink` to an extent between ½ and 1.
 ///
 /// In f64 for lights in f32, too: the products of their coordinates are then exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,10 +36,7 @@ impl Plane {
     pub fn of<R: Real>(polygon: &Polygon<'_, R>) -> Option<Self> {
         let vertices = polygon.vertices();
         let extent = vertices.iter().fold(0.0, |m: f64, v| m.max(v.max_abs().to_f64()));
-        let shrink = 1.0 / power_of_two_below(extent);
-        if !shrink.is_finite() {
-            return None;
-        }
+        let shrink = power_of_two_near_reciprocal(extent);
         // Newell's vector area, taken about the first vertex so that distant lights keep their digits.
         let first = widen::<R>(vertices[0]) * shrink;
         let (mut area, mut products, mut longest) = (DVec3::ZERO, 0.0, DVec3::ZERO);
@@ -60,16 +58,4 @@ impl Plane {
         let normal = (rough - longest * (rough.dot(longest) / longest.length_squared())).try_unit()?;
         Some(Self { shrink, normal, height: normal.dot(first) })
     }
-}
-
-/// `v` in f64.
-#[inline]
-pub(crate) fn widen<R: Real>(v: R::Vec3) -> DVec3 {
-    DVec3::new(v.x().to_f64(), v.y().to_f64(), v.z().to_f64())
-}
-
-/// The largest power of two that is not above `value` ≥ 0; 0 below the normal numbers.
-fn power_of_two_below(value: f64) -> f64 {
-    const EXPONENT: u64 = 0x7FF << 52;
-    f64::from_bits(value.to_bits() & EXPONENT)
 }

@@ -4,7 +4,8 @@ use core::marker::PhantomData;
 
 use glam::{DVec2, DVec3};
 
-use super::plane::{Plane, widen};
+use super::boundary::widen;
+use super::plane::Plane;
 use super::spherical_triangle::SphericalTriangle;
 use super::triangulate::{contains, doubled_area, triangulate};
 use super::{LightSample, Polygon, SampleLight};
