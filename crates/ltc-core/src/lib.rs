@@ -50,8 +50,8 @@ pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
 pub use light::{
     Cubic, EdgeForm, Exact, Horizon, Light, LightSample, Line, LineCylinder, LineSample, LtcBatch, Polygon,
-    PublishedRational, Quad, QuadBatch, Rational, SampleLight, Sides, Strip, TextureFetch, TextureFrame,
-    TexturedPolygon, clipped_sphere, clipped_sphere_fit,
+    PolygonSampler, PublishedRational, Quad, QuadBatch, Rational, SampleLight, Sides, Strip, TextureFetch,
+    TextureFrame, TexturedPolygon, clipped_sphere, clipped_sphere_fit,
 };
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};

@@ -34,6 +34,7 @@
 
 mod albedo;
 mod beckmann;
+mod bins;
 mod boundary;
 mod charlie;
 mod chart;
@@ -54,6 +55,7 @@ mod ruling;
 mod special;
 mod sphere;
 mod strip;
+mod transformed;
 mod tv;
 
 pub use albedo::{Albedo, directional_albedo};
@@ -76,4 +78,5 @@ pub use quadrature::{Estimate, GaussLegendre, Tolerance, integrate_1d};
 pub use rect_light::{LightHit, RectLight};
 pub use sphere::integrate_sphere;
 pub use strip::{ThinStrip, integrate_strip_area, integrate_strip_line};
+pub use transformed::{BaseShape, TransformedLobe};
 pub use tv::{ggx_total_variation, total_variation};
