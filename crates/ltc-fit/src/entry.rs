@@ -18,6 +18,8 @@ pub struct EntryFit {
     pub tv: f64,
     /// Iterations that it took.
     pub iterations: usize,
+    /// How often the lobe was compared with an LTC.
+    pub evaluations: usize,
     /// Why it stopped.
     pub stop: Stop,
 }
@@ -30,8 +32,10 @@ pub fn fit_entry(lobe: &Lobe, wo: DVec3, pattern: Pattern, max_iterations: usize
 /// The same, from a given start of the pattern.
 pub fn refine_entry(lobe: &Lobe, start: DMat3, pattern: Pattern, max_iterations: usize) -> EntryFit {
     let coordinates = CosineCoordinates { start, pattern };
+    let mut evaluations = 0;
     let Minimum { point, value, iterations, stop } = minimise(
         |point| {
+            evaluations += 1;
             let (value, by_m) = total_variation_gradient(lobe, coordinates.matrix(point));
             (value, coordinates.gradient(point, by_m))
         },
@@ -39,7 +43,7 @@ pub fn refine_entry(lobe: &Lobe, start: DMat3, pattern: Pattern, max_iterations:
     );
     let m =
         gauge::signed(pattern.project(gauge::scaled(gauge::aligned(coordinates.matrix(&point)))), pattern);
-    EntryFit { m, tv: value, iterations, stop }
+    EntryFit { m, tv: value, iterations, evaluations, stop }
 }
 
 /// The seven degrees of freedom of a lobe around a start `M₀`: `M = M₀ [[eᵃ, s, x], [s, eᵇ, y], [p, q, 1]]`.

@@ -46,9 +46,14 @@ impl<'a, R: Real> Polygon<'a, R> {
         Self { vertices, sides }
     }
 
-    /// The vertices.
+    /// Its vertices.
     pub fn vertices(&self) -> &'a [R::Vec3] {
         self.vertices
+    }
+
+    /// Which sides emit.
+    pub fn sides(&self) -> Sides {
+        self.sides
     }
 
     /// Proportional to the distance of the shading point in front of the light's plane (negative: behind it), and exactly
