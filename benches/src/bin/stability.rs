@@ -5,6 +5,9 @@ use std::process::ExitCode;
 
 use ltc_benches::stability::{Form, Page, chart, nanoseconds};
 
+/// Random cases of each shape at each value.
+const COUNT: usize = 500;
+
 const COMMAND: &str = "cargo run --release -p ltc-benches --bin stability -- docs";
 
 fn main() -> ExitCode {
@@ -28,7 +31,7 @@ fn write(folder: &Path) -> Result<(), Box<dyn std::error::Error>> {
     for form in Form::ALL {
         times.push([nanoseconds::<f32>(form)?, nanoseconds::<f64>(form)?]);
     }
-    let page = Page::measure(2000, times);
+    let page = Page::measure(COUNT, times);
     std::fs::create_dir_all(folder.join("images"))?;
     std::fs::write(folder.join("images/stability.svg"), chart(&page))?;
     std::fs::write(folder.join("stability.md"), page.markdown(COMMAND, &machine()))?;

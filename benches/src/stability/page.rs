@@ -19,10 +19,11 @@ impl Page {
     pub fn measure(count: usize, times: Vec<[f64; 2]>) -> Self {
         let sweeps = Sweep::ALL.map(|sweep| {
             let values = sweep.values();
-            let outcomes = values
-                .iter()
-                .map(|value| Form::ALL.map(|form| Outcome::of(sweep, *value, form, count)).to_vec())
-                .collect();
+            let row = |value: f64| Form::ALL.map(|form| Outcome::of(sweep, value, form, count)).to_vec();
+            let outcomes = std::thread::scope(|scope| {
+                let rows: Vec<_> = values.iter().map(|value| scope.spawn(move || row(*value))).collect();
+                rows.into_iter().map(|row| row.join().unwrap_or_default()).collect()
+            });
             (sweep, values, outcomes)
         });
         Self { sweeps: sweeps.to_vec(), times, count }

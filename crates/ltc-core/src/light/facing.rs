@@ -24,12 +24,20 @@ pub(super) enum Seen {
     Back,
 }
 
+/// How a flat light is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Facing {
+    pub side: Seen,
+    /// So nearly edge-on that the input's precision would not do for what follows.
+    pub is_grazing: bool,
+}
+
 /// From which side the origin sees a light through `point` that faces along `u × v`, if at all.
 ///
-/// Never from its own plane: where the rounding of the input to its precision decides the side, the light is edge-on. That is
-/// judged component by component: a light that lies along the axes may be as close to the shading point as it likes.
+/// Never from its own plane: where the rounding of f64 decides the side, the light is edge-on. That is judged component by
+/// component: a light that lies along the axes may be as close to the shading point as it likes.
 #[inline]
-pub(super) fn side_of_span<R: Real>(point: R::Vec3, u: R::Vec3, v: R::Vec3, sides: Sides) -> Option<Seen> {
+pub(super) fn side_of_span<R: Real>(point: R::Vec3, u: R::Vec3, v: R::Vec3, sides: Sides) -> Option<Facing> {
     let [p, u, v] = scaled::<R>([point, u, v])?;
     let (a, b) = (u.abs(), v.abs());
     let magnitude =
@@ -39,24 +47,26 @@ pub(super) fn side_of_span<R: Real>(point: R::Vec3, u: R::Vec3, v: R::Vec3, side
 
 /// The same for a light that faces along `normal`.
 #[inline]
-pub(super) fn side_of_normal<R: Real>(point: R::Vec3, normal: R::Vec3, sides: Sides) -> Option<Seen> {
+pub(super) fn side_of_normal<R: Real>(point: R::Vec3, normal: R::Vec3, sides: Sides) -> Option<Facing> {
     let [p, n, _] = scaled::<R>([point, normal, normal])?;
     side::<R>(n.dot(p), n.abs().dot(p.abs()), sides)
 }
 
 /// From a product that is positive behind the light, and the sum of the magnitudes of its terms.
 #[inline]
-fn side<R: Real>(behind: f64, magnitude: f64, sides: Sides) -> Option<Seen> {
-    // Three factors rounded to half an ε at random; and what evaluating the product in f64 adds.
-    let rounding = magnitude * (R::EPSILON.to_f64() * ROUNDING + 3.0 * f64::EPSILON);
-    if behind < -rounding {
-        Some(Seen::Front)
+fn side<R: Real>(behind: f64, magnitude: f64, sides: Sides) -> Option<Facing> {
+    let rounding = magnitude * (8.0 * f64::EPSILON);
+    let side = if behind < -rounding {
+        Seen::Front
     } else if behind > rounding && sides == Sides::Two {
-        Some(Seen::Back)
+        Seen::Back
     } else {
-        None
-    }
+        return None;
+    };
+    let is_narrow = R::EPSILON.to_f64() > f64::EPSILON;
+    let is_grazing = is_narrow && behind.abs() < GRAZING * R::EPSILON.to_f64() * magnitude;
+    Some(Facing { side, is_grazing })
 }
 
-/// How many ε of the input's precision rounding can move the product: 1.5 at worst, rarely above this.
-const ROUNDING: f64 = 0.75;
+/// Axes rounded to the input's precision turn the light by an ε; that is to be a small part of how far it is from edge-on.
+const GRAZING: f64 = 4096.0;
