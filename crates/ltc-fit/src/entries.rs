@@ -6,7 +6,10 @@ use glam::DMat3;
 use ltc_table::Axis;
 use rayon::prelude::*;
 
-use crate::{Brdf, DiskPoints, EntryFit, FitError, Lattice, Lobe, Observer, Progress, fit_entry, gauge};
+use crate::{
+    Brdf, DiskPoints, FitError, Lattice, Lobe, Objective, Observer, Optimiser, Progress, gauge, median_start,
+    path::fit_along_path, refine_by, refine_by_simplex,
+};
 
 /// Settings of [`fit_entries`].
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -14,8 +17,11 @@ use crate::{Brdf, DiskPoints, EntryFit, FitError, Lattice, Lobe, Observer, Progr
 pub struct EntrySettings {
     /// Samples of each lobe.
     pub samples: usize,
-    /// Most quasi-Newton iterations of each entry.
+    /// Most iterations of each entry.
     pub iterations: usize,
+    /// The method; `quasi_newton` unless said otherwise.
+    #[serde(default, skip_serializing_if = "Optimiser::is_default")]
+    pub optimiser: Optimiser,
 }
 
 /// Fits each entry that owns itself and lets the others follow. Entries are independent of each other, so the result
@@ -27,9 +33,14 @@ pub fn fit_entries(
     brdf: &dyn Brdf,
     axes: &[Axis],
     lattice: &Lattice,
+    objective: Objective,
     settings: EntrySettings,
     observer: Observer<'_>,
 ) -> Result<Vec<DMat3>, FitError> {
+    if let Some(form) = settings.optimiser.form() {
+        return fit_along_path(brdf, axes, lattice, objective, form, settings, observer);
+    }
+    let refine = if settings.optimiser == Optimiser::NelderMead { refine_by_simplex } else { refine_by };
     let points = DiskPoints::new(settings.samples, [0.5, 0.5]);
     let owners = lattice.owners();
     let done = AtomicUsize::new(0);
@@ -38,8 +49,9 @@ pub fn fit_entries(
         .map_init(Lobe::default, |lobe, &index| {
             let node = &lattice.nodes[index];
             brdf.sample_lobe(node.wo(), node.widths()?, &points, lobe);
-            let EntryFit { m, .. } =
-                fit_entry(lobe, node.wo(), lattice.ties[index].pattern, settings.iterations);
+            let pattern = lattice.ties[index].pattern;
+            let start = median_start(lobe, node.wo(), pattern);
+            let m = refine(&objective.towards(lobe), start, pattern, settings.iterations).m;
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             let report = Progress { stage: "entries", done, total: owners.len(), tv: None };
             if observer(report) { Ok(m) } else { Err(FitError::Stopped) }

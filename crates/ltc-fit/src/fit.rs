@@ -15,7 +15,7 @@ pub fn fit(spec: &FitSpec, observer: Observer<'_>) -> Result<(Table, Errors), Fi
     spec.validate()?;
     let brdf = spec.brdf()?;
     let lattice = Lattice::new(&spec.axes, &spec.floors);
-    let alone = entries::fit_entries(brdf, &spec.axes, &lattice, spec.entries, observer)?;
+    let alone = entries::fit_entries(brdf, &spec.axes, &lattice, spec.objective()?, spec.entries, observer)?;
     let m = joint::refine(brdf, &spec.axes, &lattice, &alone, spec.joint, observer)?;
     let (magnitude, fresnel) = channels::fit_channels(brdf, &spec.axes, &lattice, spec.channels, observer)?;
     let bare = Table::new(spec.axes.clone(), m, magnitude, fresnel, CellStats::default())?;

@@ -83,6 +83,11 @@ pub fn signed(m: DMat3, pattern: Pattern) -> DMat3 {
     if across < 0.0 { DMat3::from_cols(-m.x_axis, -m.y_axis, m.z_axis) } else { m }
 }
 
+/// `M` or `M diag(1, −1, 1)`, whichever has det M > 0: the lobe is the same (2022 paper, eq. 11).
+pub fn right_handed(m: DMat3) -> DMat3 {
+    if m.determinant() < 0.0 { DMat3::from_cols(m.x_axis, -m.y_axis, m.z_axis) } else { m }
+}
+
 /// `M` scaled so that its last column has unit length (2022 paper, §7).
 pub fn scaled(m: DMat3) -> DMat3 {
     let length = m.z_axis.length();

@@ -9,8 +9,7 @@ use ltc_table::{
 use rayon::prelude::*;
 
 use crate::{
-    Brdf, DiskPoints, FitError, Lattice, Lobe, Observer, Progress, draw, regular,
-    tv::total_variation_gradient,
+    Brdf, DiskPoints, FitError, Lattice, Lobe, Observer, Progress, draw, regular, total_variation_gradient,
 };
 
 /// Settings of [`refine`].

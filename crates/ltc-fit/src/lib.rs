@@ -13,29 +13,34 @@ pub mod entries;
 mod entry;
 mod error;
 mod fit;
+pub mod form;
 pub mod gauge;
 pub mod joint;
 mod lobe;
 pub mod measure;
+mod nelder_mead;
+pub mod objective;
+mod optimiser;
+pub mod path;
 mod points;
 mod progress;
 mod regular;
 mod spec;
 mod start;
 mod symmetry;
-mod tv;
 
-pub use bfgs::Stop;
-pub use entry::{EntryFit, fit_entry, refine_entry};
+pub use bfgs::{Minimum, Point, Stop};
+pub use entry::{EntryFit, fit_entry, refine_by, refine_by_simplex, refine_entry};
 pub use error::FitError;
 pub use fit::{Verification, fit, publish, verify};
 pub use lobe::{Brdf, GgxFamily, Lobe};
+pub use objective::{Objective, total_variation, total_variation_gradient};
+pub use optimiser::Optimiser;
 pub use points::DiskPoints;
 pub use progress::{Observer, Progress, silent};
 pub use spec::FitSpec;
 pub use start::median_start;
 pub use symmetry::{Lattice, Node, Pattern, Tie};
-pub use tv::{total_variation, total_variation_gradient};
 
 /// The unit direction of polar angle `theta` and azimuth `phi`.
 pub fn direction(theta: f64, phi: f64) -> DVec3 {

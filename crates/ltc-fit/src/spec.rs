@@ -6,8 +6,8 @@ use ltc_table::{Axis, Floors, Mapping, Quantity, check_name};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Brdf, FitError, GgxFamily, channels::ChannelSettings, entries::EntrySettings, joint::JointSettings,
-    measure::MeasureSettings,
+    Brdf, FitError, GgxFamily, Objective, Optimiser, channels::ChannelSettings, entries::EntrySettings,
+    joint::JointSettings, measure::MeasureSettings,
 };
 
 /// A fit, fully specified: the same specification gives the same digest, whatever the number of threads.
@@ -22,7 +22,8 @@ pub struct FitSpec {
     pub axes: Vec<Axis>,
     /// Smallest values that entries are fitted at.
     pub floors: Floors,
-    /// What is minimised: `total_variation`.
+    /// What is minimised: `total_variation`, `sliced_wasserstein`, `l3` or `kl`. Only the first is refined jointly; the others
+    /// need `joint.steps = 0`.
     pub objective: String,
     /// Each entry by itself.
     pub entries: EntrySettings,
@@ -64,7 +65,7 @@ impl FitSpec {
             axes,
             floors: Floors { alpha: 1e-3, lambda: 0.03, theta_max: 89.5_f64.to_radians() },
             objective: "total_variation".to_owned(),
-            entries: EntrySettings { samples: 512, iterations: 100 },
+            entries: EntrySettings { samples: 512, iterations: 100, optimiser: Optimiser::QuasiNewton },
             joint,
             channels: ChannelSettings { samples: 2048, queries: 20_000, seed: 5 },
             measure: MeasureSettings { queries: 3000, samples: 4096, seed: 77 },
@@ -95,12 +96,7 @@ impl FitSpec {
         let wrong = |field, reason: String| Err(FitError::Spec { field, reason });
         check_name(&self.name).or_else(|e| wrong("name", e.to_string()))?;
         self.brdf()?;
-        if self.objective != "total_variation" {
-            return wrong(
-                "objective",
-                format!("\"{}\" is not known; there is: total_variation", self.objective),
-            );
-        }
+        self.validate_method()?;
         for axis in &self.axes {
             axis.validate().or_else(|e| wrong("axes", e.to_string()))?;
             if axis.quantity == Phi && axis.domain != [0.0, FRAC_PI_2] {
@@ -115,6 +111,29 @@ impl FitSpec {
             );
         }
         self.validate_numbers()
+    }
+
+    /// The objective of that name.
+    ///
+    /// # Errors
+    /// [`FitError::Spec`] for an unknown name.
+    pub fn objective(&self) -> Result<Objective, FitError> {
+        Objective::by_name(&self.objective)
+    }
+
+    fn validate_method(&self) -> Result<(), FitError> {
+        let wrong = |field, reason: String| Err(FitError::Spec { field, reason });
+        let objective = self.objective()?;
+        if objective != Objective::TotalVariation && self.joint.steps > 0 {
+            let reason = "lowers total_variation only: a mean of any other over lobes of all widths is that of the narrowest \
+                          (l3) or takes a sort for each axis of each query (sliced_wasserstein), and kl is floored";
+            return wrong("joint.steps", format!("{reason}; set it to 0 for {}", self.objective));
+        }
+        if self.entries.optimiser.form().is_some() && self.axes.len() != 2 {
+            let name = self.entries.optimiser.name();
+            return wrong("entries.optimiser", format!("{name} fits isotropic tables (theta, alpha) only"));
+        }
+        Ok(())
     }
 
     fn validate_numbers(&self) -> Result<(), FitError> {
@@ -189,6 +208,13 @@ mod tests {
         };
         assert!(broken(|s| s.name = "../x".into()).starts_with("name:"));
         assert!(broken(|s| s.brdf = "phong".into()).starts_with("brdf:"));
+        assert!(
+            broken(|s| s.objective = "l2".into()).starts_with("objective: \"l2\" is not known; there are:")
+        );
+        assert!(broken(|s| s.objective = "l3".into()).starts_with("joint.steps: "));
+        assert!(
+            broken(|s| s.entries.optimiser = Optimiser::NelderMeadFour).starts_with("entries.optimiser: ")
+        );
         assert!(broken(|s| s.floors.alpha = f64::NAN).starts_with("floors.alpha:"));
         assert!(broken(|s| s.joint.samples = 1).starts_with("joint.samples:"));
         assert!(broken(|s| s.measure.seed = s.joint.seed).starts_with("measure.seed:"));
