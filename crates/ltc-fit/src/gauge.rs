@@ -56,7 +56,7 @@ pub fn smooth(axes: &[Axis], lattice: &Lattice, m: &mut [DMat3]) {
 }
 
 /// The entries one step away along each axis.
-fn neighbours(axes: &[Axis], index: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn neighbours(axes: &[Axis], index: usize) -> impl Iterator<Item = usize> {
     let mut stride = 1;
     let mut found = Vec::with_capacity(2 * axes.len());
     for axis in axes.iter().rev() {

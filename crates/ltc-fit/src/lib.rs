@@ -34,7 +34,7 @@ pub use entry::{EntryFit, fit_entry, refine_by, refine_by_simplex, refine_entry}
 pub use error::FitError;
 pub use fit::{Verification, fit, publish, verify};
 pub use lobe::{Brdf, GgxFamily, Lobe};
-pub use objective::{Objective, total_variation, total_variation_gradient};
+pub use objective::{Goal, Objective, total_variation, total_variation_gradient};
 pub use optimiser::Optimiser;
 pub use points::DiskPoints;
 pub use progress::{Observer, Progress, silent};

@@ -11,7 +11,7 @@ use crate::{
     bfgs::{Minimum, Point},
     entries::EntrySettings,
     form::{Form, mean_direction},
-    nelder_mead,
+    gauge, nelder_mead,
 };
 
 /// Edge of the first simplex, in units of the parameters.
@@ -94,7 +94,7 @@ impl Walk<'_> {
         self.brdf.sample_lobe(node.wo(), node.widths()?, &self.points, lobe);
         let minimum = fit_form(lobe, self.objective, self.form, pattern, start, self.settings.iterations);
         let m = self.form.matrix(&minimum.point, mean_of(lobe, pattern));
-        Ok((minimum.point, crate::gauge::scaled(m)))
+        Ok((minimum.point, gauge::scaled(gauge::right_handed(m))))
     }
 }
 

@@ -6,7 +6,7 @@ use ltc_table::{Axis, Floors, Mapping, Quantity, check_name};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Brdf, FitError, GgxFamily, Objective, Optimiser, channels::ChannelSettings, entries::EntrySettings,
+    Brdf, FitError, GgxFamily, Objective, channels::ChannelSettings, entries::EntrySettings,
     joint::JointSettings, measure::MeasureSettings,
 };
 
@@ -65,7 +65,7 @@ impl FitSpec {
             axes,
             floors: Floors { alpha: 1e-3, lambda: 0.03, theta_max: 89.5_f64.to_radians() },
             objective: "total_variation".to_owned(),
-            entries: EntrySettings { samples: 512, iterations: 100, optimiser: Optimiser::QuasiNewton },
+            entries: EntrySettings::new(512, 100),
             joint,
             channels: ChannelSettings { samples: 2048, queries: 20_000, seed: 5 },
             measure: MeasureSettings { queries: 3000, samples: 4096, seed: 77 },
@@ -190,6 +190,7 @@ fn anisotropic_axes() -> Vec<Axis> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Optimiser;
 
     #[test]
     fn presets_are_valid() {

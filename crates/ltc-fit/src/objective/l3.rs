@@ -7,33 +7,46 @@ use glam::{DMat3, DVec3};
 use super::kernel;
 use crate::Lobe;
 
+/// Part of `∫ q³` that the samples of `p` may miss by their own error: what goes beyond it lies where they are not.
+/// At the best LTC of 600 queries of the standard draw they miss at most 0.0045 (512 samples).
+const UNSEEN: f64 = 0.01;
+
 /// `∫ |p − q|³ dω` over the sphere in 1/sr² (2016 paper, §4), with `q` the LTC of `M = target_from_cosine`.
 ///
-/// Summed over the samples of `p`; what these do not see of `q` (between them, and below the horizon) is
-/// added as `∫ q³ − Σ inverse · q³`, with [`cube_of_ltc`] for the first: without it a lobe far from all samples would cost
-/// nothing. Where the two are nearly equal the errors of the samples may take the value a little below 0. ∞ for a singular matrix.
+/// `Σ inverse · |p − q|³` over the samples of `p`, and, where these do not see all of `q` (between them, or below the horizon),
+/// what they miss of `∫ q³` ([`cube_of_ltc`] has it in closed form) beyond a hundredth of it. Without this a lobe away from all samples
+/// would cost nothing. ∞ for a singular matrix.
 pub fn l3(lobe: &Lobe, m: DMat3) -> f64 {
-    let term = |weight: f64, share: f64, inverse: f64| {
-        let excess = weight - share;
-        over_square(excess.abs().powi(3) - share.powi(3), inverse)
+    let error = |weight: f64, share: f64, inverse| over_square((weight - share).abs().powi(3), inverse);
+    let cube = |_, share: f64, inverse| over_square(share.powi(3), inverse);
+    let (Some(error), Some(seen)) = (kernel::sum(lobe, m, error), kernel::sum(lobe, m, cube)) else {
+        return f64::INFINITY;
     };
-    let value = kernel::sum(lobe, m, term).map(|sum| sum + cube_of_ltc(m).0);
-    value.filter(|v| v.is_finite()).unwrap_or(f64::INFINITY)
+    let value = error + ((1.0 - UNSEEN) * cube_of_ltc(m).0 - seen).max(0.0);
+    if value.is_finite() { value } else { f64::INFINITY }
 }
 
 /// The same, and its derivative by every entry of `M`.
 pub fn l3_gradient(lobe: &Lobe, m: DMat3) -> (f64, DMat3) {
-    let term = |weight: f64, share: f64, inverse: f64| {
+    let error = |weight: f64, share: f64, inverse| {
         let excess = weight - share;
-        let value = excess.abs().powi(3) - share.powi(3);
-        let by_share = -3.0 * (excess.abs() * excess + share * share);
-        (over_square(value, inverse), over_square(by_share, inverse))
+        (over_square(excess.abs().powi(3), inverse), over_square(-3.0 * excess.abs() * excess, inverse))
     };
-    let (cube, cube_gradient) = cube_of_ltc(m);
-    kernel::sum_with_gradient(lobe, m, term)
-        .map(|(sum, gradient)| (sum + cube, gradient + cube_gradient))
-        .filter(|(value, gradient)| value.is_finite() && gradient.is_finite())
-        .unwrap_or((f64::INFINITY, DMat3::ZERO))
+    let cube = |_, share: f64, inverse| {
+        (over_square(share.powi(3), inverse), over_square(3.0 * share * share, inverse))
+    };
+    let (Some((mut value, mut gradient)), Some((seen, seen_gradient))) =
+        (kernel::sum_with_gradient(lobe, m, error), kernel::sum_with_gradient(lobe, m, cube))
+    else {
+        return (f64::INFINITY, DMat3::ZERO);
+    };
+    let (all, all_gradient) = cube_of_ltc(m);
+    let missed = (1.0 - UNSEEN) * all - seen;
+    if missed > 0.0 {
+        value += missed;
+        gradient += all_gradient * (1.0 - UNSEEN) - seen_gradient;
+    }
+    if value.is_finite() && gradient.is_finite() { (value, gradient) } else { (f64::INFINITY, DMat3::ZERO) }
 }
 
 /// `∫ p³ dω` in 1/sr²: the L³ error of no approximation at all.

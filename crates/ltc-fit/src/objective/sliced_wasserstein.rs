@@ -27,6 +27,9 @@ pub const WASSERSTEIN_AXES: usize = 64;
 /// Samples of the LTC by default. The paper draws 2,048 fresh ones for each step.
 pub const WASSERSTEIN_SAMPLES: usize = 512;
 
+/// The golden section, (√5 − 1)/2.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
 impl SlicedWasserstein {
     /// The distance to `lobe` with [`WASSERSTEIN_AXES`] and [`WASSERSTEIN_SAMPLES`].
     pub fn new(lobe: &Lobe) -> Self {
@@ -37,7 +40,15 @@ impl SlicedWasserstein {
     pub fn with_resolution(lobe: &Lobe, axes: usize, samples: usize) -> Self {
         let (axes, samples) = (axes.max(1), samples.max(1));
         let axes: Vec<DVec3> = (0..axes).map(|i| axis(r2(i, [0.5, 0.5]))).collect();
-        let cosine = (0..samples).map(|i| cosine(r2(i, [0.25, 0.75]))).collect();
+        // A sunflower's seeds, each with its opposite: the far samples of a narrow lobe's tail then pull to no side, and the gauge of M
+        // matters little.
+        let pairs = samples.div_ceil(2);
+        let seed = |i: usize| [(i as f64 + 0.5) / pairs as f64, (i as f64 * GOLDEN).fract()];
+        let seed = |i: usize| {
+            let [u, v] = seed(i / 2);
+            [u, 0.5 * (v + (i % 2) as f64)]
+        };
+        let cosine = (0..samples).map(|i| cosine(seed(i))).collect();
         let mut quantiles = Vec::with_capacity(axes.len() * samples);
         for axis in &axes {
             stratum_means(lobe, *axis, samples, &mut quantiles);
