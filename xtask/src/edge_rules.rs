@@ -24,7 +24,7 @@ const TOPS: &[&str] = &["ltc-cli", "ltc-tests", "ltc-benches", "xtask"];
 /// The rules of this workspace.
 pub const RULES: &[Rule] = &[
     // The mathematics is for everybody: whoever takes it takes nothing else.
-    Rule::Only { from: "ltc-core", allowed: &["glam", "libm"] },
+    Rule::Only { from: "ltc-core", allowed: &["glam", "libm", "fearless_simd"] },
     // An oracle shares no code with what it judges.
     Rule::Never { from: "ltc-reference", targets: &["ltc-*", "wgpu", "axum", "tokio"] },
     // Whoever wants only lookups compiles no GPU stack, no web server and no thread pool.

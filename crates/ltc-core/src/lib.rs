@@ -26,6 +26,7 @@
 //! # Ok::<(), ltc_core::InputError>(())
 //! ```
 
+mod distribution;
 mod error;
 mod frame;
 mod fresnel;
@@ -37,12 +38,22 @@ mod real;
 mod roughness;
 #[cfg(test)]
 mod testing;
+mod texture;
 
+pub use distribution::{
+    Base, ClampedCosine, ClampedCosineSquared, ClosedForm, Distribution, LinearlyTransformed, LtcMixture,
+    PolygonBase, UniformHemisphere, UniformSphere,
+};
 pub use error::{InputError, check_range};
 pub use frame::ShadingFrame;
 pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
-pub use light::{Horizon, Light, LightSample, Polygon, SampleLight, Sides};
+pub use light::{
+    Cubic, EdgeForm, Exact, Horizon, Light, LightSample, Line, LineCylinder, LineSample, LtcBatch, Polygon,
+    PublishedRational, Quad, QuadBatch, Rational, SampleLight, Sides, Strip, TextureFetch, TextureFrame,
+    TexturedPolygon, clipped_sphere, clipped_sphere_fit,
+};
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};
 pub use roughness::{ALPHA_MIN, Alpha, PerceptualRoughness};
+pub use texture::{PrefilteredTexture, TexelGrid};

@@ -1,5 +1,6 @@
 //! Every entry of a table fitted by itself.
 
+use core::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DMat3;
@@ -8,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::{
     Brdf, DiskPoints, EntryFit, FitError, Lattice, Lobe, Objective, Observer, Optimiser, Pattern, Progress,
-    gauge, median_start, path::fit_along_path, refine_by, refine_by_simplex,
+    gauge, median_start, path, progress::ENTRIES, refine_by, refine_by_simplex,
 };
 
 /// Settings of [`fit_entries`].
@@ -22,9 +23,9 @@ pub struct EntrySettings {
     /// The method; `quasi_newton` unless said otherwise.
     #[serde(default, skip_serializing_if = "Optimiser::is_default")]
     pub optimiser: Optimiser,
-    /// Whether each entry is fitted again from where its neighbours ended, and the lowest kept. It takes nine times as long and helps
-    /// few entries; see [`fit_entries`].
-    #[serde(default, skip_serializing_if = "is_false")]
+    /// Whether each entry is fitted again from where its neighbours ended, and the lowest kept. It takes nine times as
+    /// long and helps few entries; see [`EntryStage`].
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
     pub continuation: bool,
 }
 
@@ -35,17 +36,7 @@ impl EntrySettings {
     }
 }
 
-fn is_false(value: &bool) -> bool {
-    !value
-}
-
-/// Fits each entry that owns itself and lets the others follow. Entries are independent of each other, so the result
-/// does not depend on the number of threads.
-///
-/// The medians of the lobe are start enough: with continuation, 129 of the 3,256 entries of the `ggx-anisotropic` preset end
-/// more than 1e-3 lower in total variation, 5 more than 1e-2 (θ > 77°, λ = 0.03), the mean 1.3e-4 lower, and 1.6e-5 over samples
-/// that the fit did not see; so it is off unless asked for. It takes one more pass, which starts from where the entries on
-/// either side along each axis ended in the first.
+/// Fits each entry that owns itself and lets the others follow. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// [`FitError::Stopped`] when the observer says so.
@@ -57,83 +48,133 @@ pub fn fit_entries(
     settings: EntrySettings,
     observer: Observer<'_>,
 ) -> Result<Vec<DMat3>, FitError> {
-    if let Some(form) = settings.optimiser.form() {
-        return fit_along_path(brdf, axes, lattice, objective, form, settings, observer);
-    }
-    let mut m = vec![DMat3::IDENTITY; lattice.nodes.len()];
-    let pass = Pass { brdf, lattice, objective, settings, observer };
-    let medians = |lobe: &Lobe, index: usize| vec![pass.medians(lobe, index)];
-    let alone = pass.run(0, medians)?;
-    keep(lattice, &alone, &mut m);
-    if settings.continuation {
-        let starts = |_: &Lobe, index: usize| pass.neighbours(axes, &m, index);
-        let continued = pass.run(1, starts)?;
-        let lower = |(a, b): (EntryFit, EntryFit)| if b.value < a.value { b } else { a };
-        let lowest: Vec<EntryFit> = alone.into_iter().zip(continued).map(lower).collect();
-        keep(lattice, &lowest, &mut m);
-    }
+    let owners = lattice.owners();
+    let stage = EntryStage { brdf, axes, lattice, owners: &owners, objective, settings };
+    let fitted = stage.fit(0..owners.len(), observer)?;
+    Ok(assemble(axes, lattice, &owners, fitted.iter().map(|fit| fit.m)))
+}
+
+/// The table of these owners, the others following, turned to lie smoothly beside each other.
+pub fn assemble(
+    axes: &[Axis],
+    lattice: &Lattice,
+    owners: &[usize],
+    fitted: impl Iterator<Item = DMat3>,
+) -> Vec<DMat3> {
+    let mut m = unsmoothed(lattice, owners, fitted);
     gauge::smooth(axes, lattice, &mut m);
-    Ok(m)
+    m
 }
 
-/// Puts the owners' fits into the table, and what follows from them.
-fn keep(lattice: &Lattice, fits: &[EntryFit], m: &mut [DMat3]) {
-    for (index, fit) in lattice.owners().into_iter().zip(fits) {
-        m[index] = fit.m;
+fn unsmoothed(lattice: &Lattice, owners: &[usize], fitted: impl Iterator<Item = DMat3>) -> Vec<DMat3> {
+    let mut m = vec![DMat3::IDENTITY; lattice.nodes.len()];
+    for (index, fitted) in owners.iter().zip(fitted) {
+        m[*index] = fitted;
     }
-    lattice.follow(m);
+    lattice.follow(&mut m);
+    m
 }
 
-/// One pass over all entries that own themselves.
-struct Pass<'a> {
-    brdf: &'a dyn Brdf,
-    lattice: &'a Lattice,
-    objective: Objective,
-    settings: EntrySettings,
-    observer: Observer<'a>,
+/// The first stage of a fit, which can be done in pieces.
+///
+/// The medians of the lobe are start enough: with continuation, 129 of the 3,256 entries of the `ggx-anisotropic` preset end
+/// more than 1e-3 lower in total variation, 5 more than 1e-2 (θ > 77°, λ = 0.03), the mean 1.3e-4 lower, and 1.6e-5 over samples
+/// that the fit did not see; so it is off unless asked for. It takes one more pass, which starts from where the entries on
+/// either side along each axis ended in the first.
+#[derive(Clone, Copy)]
+pub struct EntryStage<'a> {
+    /// The material.
+    pub brdf: &'a dyn Brdf,
+    /// The table's axes.
+    pub axes: &'a [Axis],
+    /// Its entries.
+    pub lattice: &'a Lattice,
+    /// Those that own themselves, in table order.
+    pub owners: &'a [usize],
+    /// What is lowered.
+    pub objective: Objective,
+    /// How.
+    pub settings: EntrySettings,
 }
 
-impl Pass<'_> {
-    /// The best fit of each owner from its starts, of which there must be one; `number` passes are done already.
-    fn run(
+/// Entries that are fitted in one piece: a second's work or less, and enough for many threads.
+const PIECE: usize = 256;
+
+impl EntryStage<'_> {
+    /// The owners to fit next when so many are done: a few hundred, or all that are left where entries start from each other.
+    pub fn piece(&self, done: usize) -> Range<usize> {
+        let count = self.owners.len();
+        if self.is_chained() { done..count } else { done..(done + PIECE).min(count) }
+    }
+
+    /// Fits some of the owners. Where entries start from each other all are fitted, whichever are asked for.
+    ///
+    /// # Errors
+    /// [`FitError::Stopped`] when the observer says so.
+    pub fn fit(&self, which: Range<usize>, observer: Observer<'_>) -> Result<Vec<EntryFit>, FitError> {
+        if !self.is_chained() {
+            return self.alone(which, observer);
+        }
+        let all = match self.settings.optimiser.form() {
+            Some(form) => path::fit_along_path(self, form, observer)?,
+            None => self.continued(&self.alone(0..self.owners.len(), observer)?, observer)?,
+        };
+        Ok(all[which].to_vec())
+    }
+
+    fn is_chained(&self) -> bool {
+        self.settings.continuation || self.settings.optimiser.form().is_some()
+    }
+
+    fn alone(&self, which: Range<usize>, observer: Observer<'_>) -> Result<Vec<EntryFit>, FitError> {
+        self.each(which, 0, observer, |lobe, _, index, pattern| {
+            let start = median_start(lobe, self.lattice.nodes[index].wo(), pattern);
+            self.refine(lobe, start, pattern)
+        })
+    }
+
+    /// The lowest of each fit and those from its neighbours' ends.
+    fn continued(&self, alone: &[EntryFit], observer: Observer<'_>) -> Result<Vec<EntryFit>, FitError> {
+        let m = unsmoothed(self.lattice, self.owners, alone.iter().map(|fit| fit.m));
+        self.each(0..self.owners.len(), self.owners.len(), observer, |lobe, position, index, pattern| {
+            let starts = gauge::neighbours(self.axes, index).map(|n| pattern.project(m[n]));
+            starts.filter(|start| start.determinant() > 0.0).fold(alone[position], |lowest, start| {
+                let mut fit = self.refine(lobe, start, pattern);
+                let evaluations = lowest.evaluations + fit.evaluations;
+                fit = if fit.value < lowest.value { fit } else { lowest };
+                EntryFit { evaluations, ..fit }
+            })
+        })
+    }
+
+    /// `fit(lobe, position, index, pattern)` for some of the owners, in any order of time; `before` were done in a pass before.
+    fn each(
         &self,
-        number: usize,
-        starts: impl Fn(&Lobe, usize) -> Vec<DMat3> + Sync,
+        which: Range<usize>,
+        before: usize,
+        observer: Observer<'_>,
+        fit: impl Fn(&Lobe, usize, usize, Pattern) -> EntryFit + Sync,
     ) -> Result<Vec<EntryFit>, FitError> {
         let points = DiskPoints::new(self.settings.samples, [0.5, 0.5]);
-        let owners = self.lattice.owners();
-        let total = owners.len() * if self.settings.continuation { 2 } else { 1 };
-        let done = AtomicUsize::new(number * owners.len());
-        let fit = |lobe: &mut Lobe, &index: &usize| {
+        let total = self.owners.len() * if self.settings.continuation { 2 } else { 1 };
+        let done = AtomicUsize::new(before + which.start);
+        let one = |lobe: &mut Lobe, position: usize| {
+            let index = self.owners[position];
             let node = &self.lattice.nodes[index];
             self.brdf.sample_lobe(node.wo(), node.widths()?, &points, lobe);
-            let fit = self.best(lobe, self.lattice.ties[index].pattern, &starts(lobe, index));
+            let fit = fit(lobe, position, index, self.lattice.ties[index].pattern);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            let report = Progress { stage: "entries", done, total, tv: None };
-            if (self.observer)(report) { Ok(fit) } else { Err(FitError::Stopped) }
+            let report = Progress { stage: ENTRIES, done, total, tv: None };
+            if observer(report) { Ok(fit) } else { Err(FitError::Stopped) }
         };
-        owners.par_iter().map_init(Lobe::default, fit).collect()
+        which.into_par_iter().map_init(Lobe::default, one).collect()
     }
 
-    fn best(&self, lobe: &Lobe, pattern: Pattern, starts: &[DMat3]) -> EntryFit {
-        let goal = self.objective.towards(lobe);
-        let EntrySettings { optimiser, iterations, .. } = self.settings;
-        let refine = if optimiser == Optimiser::NelderMead { refine_by_simplex } else { refine_by };
-        let first = refine(&goal, starts[0], pattern, iterations);
-        starts[1..]
-            .iter()
-            .map(|start| refine(&goal, *start, pattern, iterations))
-            .fold(first, |a, b| if b.value < a.value { b } else { a })
-    }
-
-    fn medians(&self, lobe: &Lobe, index: usize) -> DMat3 {
-        median_start(lobe, self.lattice.nodes[index].wo(), self.lattice.ties[index].pattern)
-    }
-
-    /// The entries beside one, brought to its pattern; itself last, so that there is one.
-    fn neighbours(&self, axes: &[Axis], m: &[DMat3], index: usize) -> Vec<DMat3> {
-        let pattern = self.lattice.ties[index].pattern;
-        let beside = gauge::neighbours(axes, index).map(|n| pattern.project(m[n]));
-        beside.filter(|start| start.determinant() > 0.0).chain([m[index]]).collect()
+    fn refine(&self, lobe: &Lobe, start: DMat3, pattern: Pattern) -> EntryFit {
+        let refine = match self.settings.optimiser {
+            Optimiser::NelderMead => refine_by_simplex,
+            _ => refine_by,
+        };
+        refine(&self.objective.towards(lobe), start, pattern, self.settings.iterations)
     }
 }

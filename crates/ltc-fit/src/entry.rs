@@ -21,6 +21,8 @@ pub struct EntryFit {
     pub value: f64,
     /// Iterations that it took.
     pub iterations: usize,
+    /// How often the lobe was compared with an LTC.
+    pub evaluations: usize,
     /// Why it stopped.
     pub stop: Stop,
 }
@@ -38,14 +40,16 @@ pub fn refine_entry(lobe: &Lobe, start: DMat3, pattern: Pattern, max_iterations:
 /// Lowers any objective towards its lobe by BFGS, from a given start of the pattern with det > 0.
 pub fn refine_by(goal: &Goal<'_>, start: DMat3, pattern: Pattern, max_iterations: usize) -> EntryFit {
     let coordinates = CosineCoordinates { start, pattern };
+    let mut evaluations = 0;
     let minimum = bfgs::minimise(
         |point| {
+            evaluations += 1;
             let (value, by_m) = goal.value_and_gradient(coordinates.matrix(point));
             (value / goal.unit(), coordinates.gradient(point, by_m * (1.0 / goal.unit())))
         },
         max_iterations,
     );
-    coordinates.fit(goal, minimum)
+    coordinates.fit(goal, minimum, evaluations)
 }
 
 /// Edge of the first simplex of [`refine_by_simplex`], relative to the lobe's width.
@@ -63,14 +67,18 @@ pub fn refine_by_simplex(goal: &Goal<'_>, start: DMat3, pattern: Pattern, max_it
         }
         point
     };
+    let mut evaluations = 0;
     let minimum = nelder_mead::minimise(
-        |p| goal.value(coordinates.matrix(&spread(p))) / goal.unit(),
+        |p| {
+            evaluations += 1;
+            goal.value(coordinates.matrix(&spread(p))) / goal.unit()
+        },
         &Point::default(),
         free.len(),
         SIMPLEX,
         max_iterations,
     );
-    coordinates.fit(goal, Minimum { point: spread(&minimum.point), ..minimum })
+    coordinates.fit(goal, Minimum { point: spread(&minimum.point), ..minimum }, evaluations)
 }
 
 /// The seven degrees of freedom of a lobe around a start `M₀`: `M = M₀ [[eᵃ, s, x], [s, eᵇ, y], [p, q, 1]]`.
@@ -92,13 +100,13 @@ impl CosineCoordinates {
     }
 
     /// The fit that a minimum in these coordinates is.
-    fn fit(&self, goal: &Goal<'_>, minimum: Minimum) -> EntryFit {
+    fn fit(&self, goal: &Goal<'_>, minimum: Minimum, evaluations: usize) -> EntryFit {
         let Minimum { point, value, iterations, stop } = minimum;
         let found = gauge::right_handed(self.matrix(&point));
         let m = gauge::signed(self.pattern.project(gauge::scaled(gauge::aligned(found))), self.pattern);
         let value = value * goal.unit();
         let tv = if goal.is_total_variation() { value } else { total_variation(goal.lobe(), m) };
-        EntryFit { m, tv, value, iterations, stop }
+        EntryFit { m, tv, value, iterations, evaluations, stop }
     }
 
     fn gradient(&self, [a, b, ..]: &Point, by_m: DMat3) -> Point {

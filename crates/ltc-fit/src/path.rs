@@ -2,16 +2,17 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use glam::DMat3;
-use ltc_table::Axis;
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{
-    Brdf, DiskPoints, FitError, Lattice, Lobe, Objective, Observer, Pattern, Progress,
-    bfgs::{Minimum, Point},
-    entries::EntrySettings,
+    DiskPoints, EntryFit, FitError, Lobe, Objective, Observer, Pattern, Point, Progress,
+    bfgs::Minimum,
+    entries::EntryStage,
     form::{Form, mean_direction},
     gauge, nelder_mead,
+    objective::total_variation,
+    progress::ENTRIES,
 };
 
 /// Edge of the first simplex, in units of the parameters.
@@ -19,55 +20,50 @@ const SIMPLEX: f64 = 0.05;
 
 /// Fits the entries of a table over θ and α in a restricted form by Nelder and Mead's simplex.
 ///
-/// As the blog has it: along normal incidence from the roughest entry, which starts at the identity, to the smoothest; then from each of
-/// these, at constant roughness, towards grazing. At normal incidence the lobe is round, and one width is all that is
-/// fitted. The columns are independent of each other, so the result does not depend on the number of threads.
+/// As the blog has it: along normal incidence from the roughest entry, which starts at the identity, to the smoothest;
+/// then from each of these, at constant roughness, towards grazing. At normal incidence the lobe is round, and one width
+/// is all that is fitted. The columns are independent of each other, so the result does not depend on the number of
+/// threads.
 ///
 /// # Errors
 /// [`FitError::Stopped`] when the observer says so.
 pub fn fit_along_path(
-    brdf: &dyn Brdf,
-    axes: &[Axis],
-    lattice: &Lattice,
-    objective: Objective,
+    stage: &EntryStage<'_>,
     form: Form,
-    settings: EntrySettings,
     observer: Observer<'_>,
-) -> Result<Vec<DMat3>, FitError> {
-    let total = lattice.nodes.len();
-    let widths = axes.last().map_or(1, |axis| axis.len);
+) -> Result<Vec<EntryFit>, FitError> {
+    let total = stage.lattice.nodes.len();
+    let widths = stage.axes.last().map_or(1, |axis| axis.len);
     let done = AtomicUsize::new(0);
-    let walk = Walk {
-        brdf,
-        lattice,
-        points: DiskPoints::new(settings.samples, [0.5, 0.5]),
-        objective,
-        form,
-        settings,
-    };
+    let points = DiskPoints::new(stage.settings.samples, [0.5, 0.5]);
     let fit = |lobe: &mut Lobe, index: usize, start: &Point| {
-        let fitted = walk.fit(lobe, index, start)?;
+        let node = &stage.lattice.nodes[index];
+        let pattern = stage.lattice.ties[index].pattern;
+        stage.brdf.sample_lobe(node.wo(), node.widths()?, &points, lobe);
+        let fitted = fit_form(lobe, stage.objective, form, pattern, start, stage.settings.iterations);
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        let report = Progress { stage: "entries", done, total, tv: None };
+        let report = Progress { stage: ENTRIES, done, total, tv: None };
         if observer(report) { Ok(fitted) } else { Err(FitError::Stopped) }
     };
 
-    let mut first = vec![(Point::default(), DMat3::IDENTITY); widths];
+    let mut first = Vec::with_capacity(widths);
     let mut start = form.identity();
     let mut lobe = Lobe::default();
     for column in (0..widths).rev() {
-        first[column] = fit(&mut lobe, column, &start)?;
-        start = first[column].0;
+        let fitted = fit(&mut lobe, column, &start)?;
+        start = fitted.0;
+        first.push(fitted);
     }
-    let columns: Result<Vec<Vec<DMat3>>, FitError> = first
+    first.reverse();
+    let columns: Result<Vec<Vec<EntryFit>>, FitError> = first
         .into_par_iter()
         .enumerate()
-        .map_init(Lobe::default, |lobe, (column, (mut start, m))| {
-            let mut fitted = vec![m];
+        .map_init(Lobe::default, |lobe, (column, (mut start, at_normal))| {
+            let mut fitted = vec![at_normal];
             for index in (column + widths..total).step_by(widths) {
-                let (next, m) = fit(lobe, index, &start)?;
-                start = next;
-                fitted.push(m);
+                let (end, entry) = fit(lobe, index, &start)?;
+                start = end;
+                fitted.push(entry);
             }
             Ok(fitted)
         })
@@ -76,30 +72,8 @@ pub fn fit_along_path(
     Ok((0..total).map(|index| columns[index % widths][index / widths]).collect())
 }
 
-/// What all entries of the path share.
-struct Walk<'a> {
-    brdf: &'a dyn Brdf,
-    lattice: &'a Lattice,
-    points: DiskPoints,
-    objective: Objective,
-    form: Form,
-    settings: EntrySettings,
-}
-
-impl Walk<'_> {
-    /// The parameters of an entry, and its matrix with the last column of unit length.
-    fn fit(&self, lobe: &mut Lobe, index: usize, start: &Point) -> Result<(Point, DMat3), FitError> {
-        let node = &self.lattice.nodes[index];
-        let pattern = self.lattice.ties[index].pattern;
-        self.brdf.sample_lobe(node.wo(), node.widths()?, &self.points, lobe);
-        let minimum = fit_form(lobe, self.objective, self.form, pattern, start, self.settings.iterations);
-        let m = self.form.matrix(&minimum.point, mean_of(lobe, pattern));
-        Ok((minimum.point, gauge::scaled(gauge::right_handed(m))))
-    }
-}
-
-/// Lowers the objective in a restricted form, for a lobe seen from φ = 0. A lobe of [`Pattern::Round`] keeps equal widths
-/// and no shear.
+/// Lowers the objective in a restricted form, for a lobe seen from φ = 0: the parameters, and the fit. A lobe of
+/// [`Pattern::Round`] keeps equal widths and no shear.
 pub fn fit_form(
     lobe: &Lobe,
     objective: Objective,
@@ -107,23 +81,21 @@ pub fn fit_form(
     pattern: Pattern,
     start: &Point,
     max_iterations: usize,
-) -> Minimum {
+) -> (Point, EntryFit) {
     let goal = objective.towards(lobe);
-    let mean = mean_of(lobe, pattern);
-    if pattern == Pattern::Round {
-        let value = |p: &Point| goal.value(form.matrix(&form.round(p[0]), mean)) / goal.unit();
-        let minimum = nelder_mead::minimise(value, start, 1, SIMPLEX, max_iterations);
-        return Minimum {
-            point: form.round(minimum.point[0]),
-            value: minimum.value * goal.unit(),
-            ..minimum
-        };
-    }
-    let value = |p: &Point| goal.value(form.matrix(p, mean)) / goal.unit();
-    let minimum = nelder_mead::minimise(value, start, form.dimension(), SIMPLEX, max_iterations);
-    Minimum { value: minimum.value * goal.unit(), ..minimum }
-}
-
-fn mean_of(lobe: &Lobe, pattern: Pattern) -> glam::DVec3 {
-    if pattern == Pattern::Round { glam::DVec3::Z } else { mean_direction(lobe) }
+    let round = pattern == Pattern::Round;
+    let mean = if round { DVec3::Z } else { mean_direction(lobe) };
+    let parameters = |p: &Point| if round { form.round(p[0]) } else { *p };
+    let dimension = if round { 1 } else { form.dimension() };
+    let mut evaluations = 0;
+    let value = |p: &Point| {
+        evaluations += 1;
+        goal.value(form.matrix(&parameters(p), mean)) / goal.unit()
+    };
+    let Minimum { point, value, iterations, stop } =
+        nelder_mead::minimise(value, start, dimension, SIMPLEX, max_iterations);
+    let point = parameters(&point);
+    let m = gauge::signed(gauge::scaled(gauge::right_handed(form.matrix(&point, mean))), pattern);
+    let tv = total_variation(lobe, m);
+    (point, EntryFit { m, tv, value: value * goal.unit(), iterations, evaluations, stop })
 }

@@ -6,7 +6,7 @@ use ltc_table::{Axis, Floors, Mapping, Quantity, check_name};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Brdf, FitError, GgxFamily, Objective, channels::ChannelSettings, entries::EntrySettings,
+    Brdf, FitError, GgxFamily, Objective, brdf, channels::ChannelSettings, entries::EntrySettings,
     joint::JointSettings, measure::MeasureSettings,
 };
 
@@ -16,7 +16,7 @@ use crate::{
 pub struct FitSpec {
     /// Name of the table.
     pub name: String,
-    /// Name of the BRDF: `ggx`.
+    /// Name of the BRDF: one of [`brdf::names`], or of one's own ([`crate::fit_with`]).
     pub brdf: String,
     /// The table's axes: θ, α (isotropic) or θ, φ, α, λ.
     pub axes: Vec<Axis>,
@@ -37,7 +37,15 @@ pub struct FitSpec {
 
 impl FitSpec {
     /// Names of the presets.
-    pub const PRESETS: [&'static str; 2] = ["ggx-isotropic", "ggx-anisotropic"];
+    pub const PRESETS: [&'static str; 7] = [
+        "ggx-isotropic",
+        "ggx-anisotropic",
+        "beckmann-isotropic",
+        "beckmann-anisotropic",
+        "disney-diffuse",
+        "oren-nayar",
+        "charlie-sheen",
+    ];
 
     /// A specification by name.
     ///
@@ -45,6 +53,9 @@ impl FitSpec {
     /// [`FitError::NoSuchPreset`].
     pub fn preset(name: &str) -> Result<Self, FitError> {
         use Quantity::{Alpha, Theta};
+        if let Some(spec) = brdf::preset(name) {
+            return Ok(spec);
+        }
         let (axes, joint) = match name {
             "ggx-isotropic" => (
                 vec![Axis::full(Theta, Mapping::SqrtOneMinusCos, 64), Axis::full(Alpha, Mapping::Sqrt, 64)],
@@ -77,14 +88,10 @@ impl FitSpec {
     /// # Errors
     /// [`FitError::Spec`] for an unknown name.
     pub fn brdf(&self) -> Result<&'static dyn Brdf, FitError> {
-        if self.brdf == GgxFamily.name() {
-            Ok(&GgxFamily)
-        } else {
-            Err(FitError::Spec {
-                field: "brdf",
-                reason: format!("\"{}\" is not known; there is: ggx", self.brdf),
-            })
-        }
+        brdf::by_name(&self.brdf).ok_or_else(|| FitError::Spec {
+            field: "brdf",
+            reason: format!("\"{}\" is not known; there are: {}", self.brdf, brdf::names()),
+        })
     }
 
     /// Checks every field.
@@ -92,15 +99,32 @@ impl FitSpec {
     /// # Errors
     /// [`FitError::Spec`], naming the field and what is wrong with it.
     pub fn validate(&self) -> Result<(), FitError> {
+        self.brdf()?;
+        self.validate_settings()
+    }
+
+    /// Checks every field, and that the BRDF is `brdf`.
+    ///
+    /// # Errors
+    /// [`FitError::Spec`], naming the field and what is wrong with it.
+    pub fn validate_with(&self, brdf: &dyn Brdf) -> Result<(), FitError> {
+        if self.brdf != brdf.name() {
+            let reason = format!("is \"{}\", the BRDF's name is \"{}\"", self.brdf, brdf.name());
+            return Err(FitError::Spec { field: "brdf", reason });
+        }
+        self.validate_settings()
+    }
+
+    fn validate_settings(&self) -> Result<(), FitError> {
         use Quantity::{Alpha, Lambda, Phi, Theta};
         let wrong = |field, reason: String| Err(FitError::Spec { field, reason });
         check_name(&self.name).or_else(|e| wrong("name", e.to_string()))?;
-        self.brdf()?;
         self.validate_method()?;
-        for axis in &self.axes {
-            axis.validate().or_else(|e| wrong("axes", e.to_string()))?;
+        const AXES: [&str; 4] = ["axes[0]", "axes[1]", "axes[2]", "axes[3]"];
+        for (axis, field) in self.axes.iter().zip(AXES) {
+            axis.validate().or_else(|e| wrong(field, e.to_string()))?;
             if axis.quantity == Phi && axis.domain != [0.0, FRAC_PI_2] {
-                return wrong("axes", "phi must span [0, π/2]: the symmetries tie its ends".to_owned());
+                return wrong(field, "phi must span [0, π/2]: the symmetries tie its ends".to_owned());
             }
         }
         let quantities: Vec<_> = self.axes.iter().map(|a| a.quantity).collect();
@@ -109,6 +133,12 @@ impl FitSpec {
                 "axes",
                 "must be theta, alpha or theta, phi, alpha, lambda in this order".to_owned(),
             );
+        }
+        /// An array of matrices of more bytes than this is refused when the table is read.
+        const MAX_NODES: u64 = (1 << 30) / 72;
+        let nodes = self.axes.iter().fold(1_u64, |n, axis| n.saturating_mul(axis.len as u64));
+        if nodes > MAX_NODES {
+            return wrong("axes", format!("have {nodes} nodes in all, must have at most {MAX_NODES}"));
         }
         self.validate_numbers()
     }
@@ -125,9 +155,16 @@ impl FitSpec {
         let wrong = |field, reason: String| Err(FitError::Spec { field, reason });
         let objective = self.objective()?;
         if objective != Objective::TotalVariation && self.joint.steps > 0 {
-            let reason = "lowers total_variation only: a mean of any other over lobes of all widths is that of the narrowest \
-                          (l3) or takes a sort for each axis of each query (sliced_wasserstein), and kl is floored";
-            return wrong("joint.steps", format!("{reason}; set it to 0 for {}", self.objective));
+            let reason = match objective {
+                Objective::SlicedWasserstein => "it would take a sort for each axis of each query",
+                Objective::L3 => "its mean over lobes of all widths would be that of the narrowest",
+                _ => "where it is infinite it is a floor that would be refined",
+            };
+            let name = objective.name();
+            return wrong(
+                "objective",
+                format!("{name} is not refined jointly ({reason}): set joint.steps to 0"),
+            );
         }
         if self.entries.optimiser.form().is_some() && self.axes.len() != 2 {
             let name = self.entries.optimiser.name();
@@ -212,7 +249,7 @@ mod tests {
         assert!(
             broken(|s| s.objective = "l2".into()).starts_with("objective: \"l2\" is not known; there are:")
         );
-        assert!(broken(|s| s.objective = "l3".into()).starts_with("joint.steps: "));
+        assert!(broken(|s| s.objective = "l3".into()).starts_with("objective: l3 is not refined jointly"));
         assert!(
             broken(|s| s.entries.optimiser = Optimiser::NelderMeadFour).starts_with("entries.optimiser: ")
         );
@@ -220,6 +257,9 @@ mod tests {
         assert!(broken(|s| s.joint.samples = 1).starts_with("joint.samples:"));
         assert!(broken(|s| s.measure.seed = s.joint.seed).starts_with("measure.seed:"));
         assert!(broken(|s| s.axes.swap(0, 1)).starts_with("axes:"));
-        assert!(broken(|s| s.axes[1].domain = [0.1, 1.0]).starts_with("axes:"));
+        assert!(
+            broken(|s| s.axes.iter_mut().for_each(|a| a.len = 4096)).starts_with("axes: have 2814749767")
+        );
+        assert!(broken(|s| s.axes[1].domain = [0.1, 1.0]).starts_with("axes[1]:"));
     }
 }

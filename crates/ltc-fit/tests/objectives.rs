@@ -1,6 +1,8 @@
 //! What the 2022 paper says of objectives (§4.1 and 4.2): L³ fails on narrow lobes, sliced Wasserstein does not; nor does total
 //! variation from the medians of the lobe.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
+
 use glam::{DMat3, DVec3};
 use ltc_core::Alpha;
 use ltc_fit::objective::{SlicedWasserstein, cube_of_lobe, kullback_leibler, l3};

@@ -1,5 +1,7 @@
 //! Gauge and symmetry of what is fitted and of what is shipped (2022 paper, §5 and 6).
 
+#![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
+
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DMat3, DVec3};

@@ -27,7 +27,8 @@ impl Catalogue {
         }
     }
 
-    /// Reads `NAME/VERSION/{manifest.json, table.npz}` below a folder. Folders without a manifest are passed over.
+    /// Reads `NAME/VERSION/{manifest.json, table.npz}` below a folder. Folders without a manifest and hidden ones, whose
+    /// names begin with a dot, are passed over.
     ///
     /// # Errors
     /// [`TableError::Io`] when the folder cannot be read; whatever is wrong with a version that is there.
@@ -56,10 +57,10 @@ impl Catalogue {
         &self,
         name: &str,
     ) -> Result<impl DoubleEndedIterator<Item = &Arc<TableVersion>>, TableError> {
-        self.tables.get(name).map(BTreeMap::values).ok_or_else(|| TableError::NoSuchTable {
-            name: name.to_owned(),
-            known: self.names().collect::<Vec<_>>().join(", "),
-        })
+        self.tables
+            .get(name)
+            .map(BTreeMap::values)
+            .ok_or_else(|| TableError::NoSuchTable { name: name.to_owned(), known: self.known_names() })
     }
 
     /// A version by number, digest, or the alias `latest`.
@@ -73,7 +74,8 @@ impl Catalogue {
         } else if is_digest(version) {
             versions.find(|v| v.manifest().digest == version)
         } else {
-            version.parse().ok().and_then(|n: u32| self.tables[name].get(&n))
+            // As it is written, and no other way: "01" and "+1" name nothing.
+            versions.find(|v| v.manifest().version.to_string() == version)
         };
         found.ok_or_else(|| TableError::NoSuchVersion {
             name: name.to_owned(),
@@ -92,11 +94,15 @@ impl Catalogue {
                 self.tables.values().flat_map(BTreeMap::values).find(|v| v.manifest().digest == table);
             return by_digest.ok_or_else(|| TableError::NoSuchTable {
                 name: table.to_owned(),
-                known: self.names().collect::<Vec<_>>().join(", "),
+                known: self.known_names(),
             });
         }
         let (name, version) = table.split_once('@').unwrap_or((table, "latest"));
         self.version(name, version)
+    }
+
+    fn known_names(&self) -> String {
+        if self.tables.is_empty() { "none".to_owned() } else { self.names().collect::<Vec<_>>().join(", ") }
     }
 
     fn known_versions(&self, name: &str) -> String {
@@ -110,7 +116,8 @@ fn subfolders(folder: &Path) -> Result<Vec<std::path::PathBuf>, TableError> {
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(io)? {
         let path = entry.map_err(io)?.path();
-        if path.is_dir() {
+        let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        if path.is_dir() && !hidden {
             paths.push(path);
         }
     }
@@ -150,6 +157,11 @@ mod tests {
         assert_eq!(error.to_string(), "no table named \"c\"; there are: a, b");
         let error = catalogue.find("a@3").unwrap_err();
         assert_eq!(error.to_string(), "table \"a\" has no version \"3\"; there are: 2, 10, latest");
+        for odd in ["02", "+2", " 2", ""] {
+            assert!(catalogue.version("a", odd).is_err(), "{odd:?}");
+        }
+        let error = Catalogue::default().find("a").unwrap_err();
+        assert_eq!(error.to_string(), "no table named \"a\"; there are: none");
     }
 
     #[test]
@@ -159,6 +171,8 @@ mod tests {
             version("a", n, isotropic()).write_folder(&folder.path().join(format!("a/{n}"))).unwrap();
         }
         std::fs::remove_file(folder.path().join("a/2").join(MANIFEST_FILE)).unwrap();
+        // What a kill left in the middle of publishing.
+        version("a", 3, isotropic()).write_folder(&folder.path().join("a/.3.tmp")).unwrap();
         let catalogue = Catalogue::read_folder(folder.path()).unwrap();
         assert_eq!(catalogue.versions("a").unwrap().count(), 1);
         assert!(Catalogue::read_folder(&folder.path().join("none")).is_err());

@@ -1,13 +1,37 @@
 //! Lights, as a shading point sees them: each file a shape, each shape a closed form.
 
+mod angle;
+mod batch;
 mod boundary;
+mod convex;
+mod edge_form;
 mod horizon;
+mod lane;
+mod line;
+mod line_cylinder;
+mod plane;
 mod polygon;
+mod proxy;
+mod quad;
+mod ring;
 mod sample;
+mod segment;
+mod simd;
+mod strip;
+mod textured;
 
+pub use batch::{LtcBatch, QuadBatch};
+pub use edge_form::{Cubic, EdgeForm, Exact, PublishedRational, Rational};
 pub use horizon::Horizon;
+pub use line::{Line, LineSample};
+pub use line_cylinder::LineCylinder;
+pub(crate) use plane::Plane;
 pub use polygon::Polygon;
+pub use proxy::{clipped_sphere, clipped_sphere_fit};
+pub use quad::Quad;
 pub use sample::{LightSample, SampleLight};
+pub use strip::Strip;
+pub use textured::{TextureFetch, TextureFrame, TexturedPolygon};
 
 use crate::{Ltc, Real};
 
