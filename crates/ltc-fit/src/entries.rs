@@ -51,5 +51,6 @@ pub fn fit_entries(
     }
     lattice.follow(&mut m);
     gauge::smooth(axes, lattice, &mut m);
+    gauge::scale(axes, lattice, &mut m);
     Ok(m)
 }

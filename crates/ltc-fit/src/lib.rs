@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 
+mod albedo;
 mod bfgs;
 pub mod channels;
 pub mod draw;
@@ -25,6 +26,7 @@ mod start;
 mod symmetry;
 mod tv;
 
+pub use albedo::{DiskNode, DiskRule};
 pub use bfgs::Stop;
 pub use entry::{EntryFit, fit_entry, refine_entry};
 pub use error::FitError;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use ltc_core::{Alpha, Real, Vector, schlick_weight};
 
-use crate::DiskPoints;
+use crate::{DiskPoints, DiskRule, albedo::ggx_albedo};
 
 /// Number of samples that the kernels take at a time; arrays are padded to it with samples of weight 0.
 pub(crate) const LANES: usize = 4;
@@ -86,6 +86,12 @@ pub trait Brdf: Sync {
     /// Replaces `lobe` by samples of the cosine-weighted BRDF seen from `wo`, one for each of `points` that leads above
     /// the horizon.
     fn sample_lobe(&self, wo: DVec3, alpha: Alpha, points: &DiskPoints, lobe: &mut Lobe);
+
+    /// Magnitude and Fresnel term of the lobe, by `rule`. Unless a BRDF knows better, by as many samples of the lobe.
+    fn albedo(&self, wo: DVec3, alpha: Alpha, rule: &DiskRule, lobe: &mut Lobe) -> (f64, f64) {
+        self.sample_lobe(wo, alpha, &rule.points, lobe);
+        (lobe.magnitude, lobe.fresnel)
+    }
 }
 
 /// GGX with height-correlated masking and shadowing, F = 1.
@@ -131,10 +137,14 @@ impl Brdf for GgxFamily {
         }
         lobe.finish(n);
     }
+
+    fn albedo(&self, wo: DVec3, alpha: Alpha, rule: &DiskRule, _: &mut Lobe) -> (f64, f64) {
+        ggx_albedo(wo, alpha, rule)
+    }
 }
 
 /// `Λ(ω) cos θ`, see [`ltc_core::Ggx`].
-fn lambda_cos(w: DVec3, alpha: Alpha) -> f64 {
+pub(crate) fn lambda_cos(w: DVec3, alpha: Alpha) -> f64 {
     let s2 = (alpha.x() * w.x).squared() + (alpha.y() * w.y).squared();
     0.5 * s2 / (w.z + (w.z * w.z + s2).sqrt()).max(f64::MIN_POSITIVE)
 }
