@@ -37,12 +37,16 @@ mod real;
 mod roughness;
 #[cfg(test)]
 mod testing;
+mod texture;
 
 pub use error::{InputError, check_range};
 pub use frame::ShadingFrame;
 pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
-pub use light::{Horizon, Light, LightSample, Polygon, SampleLight, Sides};
+pub use light::{
+    Horizon, Light, LightSample, Polygon, SampleLight, Sides, TextureFetch, TextureFrame, TexturedPolygon,
+};
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};
 pub use roughness::{ALPHA_MIN, Alpha, PerceptualRoughness};
+pub use texture::{PrefilteredTexture, TexelGrid};

@@ -56,10 +56,10 @@ impl Catalogue {
         &self,
         name: &str,
     ) -> Result<impl DoubleEndedIterator<Item = &Arc<TableVersion>>, TableError> {
-        self.tables.get(name).map(BTreeMap::values).ok_or_else(|| TableError::NoSuchTable {
-            name: name.to_owned(),
-            known: self.names().collect::<Vec<_>>().join(", "),
-        })
+        self.tables
+            .get(name)
+            .map(BTreeMap::values)
+            .ok_or_else(|| TableError::NoSuchTable { name: name.to_owned(), known: self.known_names() })
     }
 
     /// A version by number, digest, or the alias `latest`.
@@ -73,7 +73,8 @@ impl Catalogue {
         } else if is_digest(version) {
             versions.find(|v| v.manifest().digest == version)
         } else {
-            version.parse().ok().and_then(|n: u32| self.tables[name].get(&n))
+            // As it is written, and no other way: "01" and "+1" name nothing.
+            versions.find(|v| v.manifest().version.to_string() == version)
         };
         found.ok_or_else(|| TableError::NoSuchVersion {
             name: name.to_owned(),
@@ -92,11 +93,15 @@ impl Catalogue {
                 self.tables.values().flat_map(BTreeMap::values).find(|v| v.manifest().digest == table);
             return by_digest.ok_or_else(|| TableError::NoSuchTable {
                 name: table.to_owned(),
-                known: self.names().collect::<Vec<_>>().join(", "),
+                known: self.known_names(),
             });
         }
         let (name, version) = table.split_once('@').unwrap_or((table, "latest"));
         self.version(name, version)
+    }
+
+    fn known_names(&self) -> String {
+        if self.tables.is_empty() { "none".to_owned() } else { self.names().collect::<Vec<_>>().join(", ") }
     }
 
     fn known_versions(&self, name: &str) -> String {
@@ -150,6 +155,11 @@ mod tests {
         assert_eq!(error.to_string(), "no table named \"c\"; there are: a, b");
         let error = catalogue.find("a@3").unwrap_err();
         assert_eq!(error.to_string(), "table \"a\" has no version \"3\"; there are: 2, 10, latest");
+        for odd in ["02", "+2", " 2", ""] {
+            assert!(catalogue.version("a", odd).is_err(), "{odd:?}");
+        }
+        let error = Catalogue::default().find("a").unwrap_err();
+        assert_eq!(error.to_string(), "no table named \"a\"; there are: none");
     }
 
     #[test]

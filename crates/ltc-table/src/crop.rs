@@ -1,6 +1,46 @@
 //! The part of a table that a scene needs.
 
-use crate::{CellStats, Quantity, Table, TableError};
+use std::borrow::Cow;
+
+use crate::{CellStats, Quantity, Table, TableError, TableVersion};
+
+/// Ranges of axes: which part of a table to keep. None of them: all of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part(pub Vec<(Quantity, [f64; 2])>);
+
+impl Part {
+    /// Whether this is the whole table.
+    pub fn is_whole(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The part of `table`: see [`Table::crop`].
+    ///
+    /// # Errors
+    /// Those of [`Table::crop`].
+    pub fn of<'a>(&self, table: &'a Table) -> Result<Cow<'a, Table>, TableError> {
+        let mut table = Cow::Borrowed(table);
+        for (quantity, [low, high]) in &self.0 {
+            table = Cow::Owned(table.crop(*quantity, *low, *high)?);
+        }
+        Ok(table)
+    }
+
+    /// The manifest to travel within a file of the part `table` of `version`, as JSON: it has the part's axes and says
+    /// under `"part"` which ranges were asked for. Its digest still names the version it is a part of.
+    ///
+    /// # Errors
+    /// [`TableError::Json`], which no manifest gives.
+    pub fn manifest(&self, version: &TableVersion, table: &Table) -> Result<String, TableError> {
+        let mut manifest = serde_json::to_value(version.manifest())?;
+        if !self.is_whole() {
+            manifest["axes"] = serde_json::to_value(table.axes())?;
+            let ranges = self.0.iter().map(|(q, range)| (q.name().to_owned(), (*range).into()));
+            manifest["part"] = serde_json::Value::Object(ranges.collect());
+        }
+        Ok(manifest.to_string())
+    }
+}
 
 impl Table {
     /// The smallest table whose nodes still surround `[low, high]` of a quantity, its entries unchanged.
@@ -71,6 +111,21 @@ mod tests {
         let query = Query { theta: 0.3, phi: 0.0, alpha_x: 0.5, alpha_y: 0.5 };
         let (a, b) = (isotropic().lookup(&query).unwrap(), curved.lookup(&query).unwrap());
         assert!((a.magnitude - b.magnitude).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_part_says_in_its_manifest_which_it_is() {
+        let version = crate::testing::version("a", 1, anisotropic());
+        let part = Part(vec![(Quantity::Alpha, [0.4, 0.9]), (Quantity::Theta, [0.0, 0.5])]);
+        let table = part.of(version.table()).unwrap();
+        assert_eq!(table.shape(), [2, 3, 3, 3]);
+        let manifest: serde_json::Value =
+            serde_json::from_str(&part.manifest(&version, &table).unwrap()).unwrap();
+        assert_eq!(manifest["part"], serde_json::json!({ "alpha": [0.4, 0.9], "theta": [0.0, 0.5] }));
+        assert_eq!(manifest["axes"][0]["len"], 2);
+        assert_eq!(manifest["digest"], version.manifest().digest);
+        let whole = Part::default().manifest(&version, version.table()).unwrap();
+        assert!(!whole.contains("\"part\""));
     }
 
     #[test]

@@ -26,6 +26,7 @@ mod version;
 pub use axis::{Axis, Mapping, Quantity};
 pub use catalogue::Catalogue;
 pub use channels::Channels;
+pub use crop::Part;
 pub use error::TableError;
 pub use lookup::{Lobe, Lookup};
 pub use manifest::{BrdfInfo, ChannelInfo, DrawErrors, Errors, Floors, Manifest};

@@ -1,8 +1,6 @@
 //! The forms a table can be fetched in.
 
-use std::borrow::Cow;
-
-use ltc_table::{Channels, Precision, Quantity, Table, TableError, TableVersion, ktx2, npz};
+use ltc_table::{Channels, Part, Precision, Quantity, TableError, TableVersion, ktx2, npz};
 
 use crate::params::{Params, number};
 use crate::{ApiError, json_table};
@@ -75,7 +73,7 @@ pub struct Variant {
     /// What is in it.
     pub channels: Channels,
     /// Ranges of axes to keep.
-    pub crop: Vec<(Quantity, [f64; 2])>,
+    pub part: Part,
 }
 
 /// Names the bytes of a variant of a version.
@@ -105,7 +103,7 @@ impl Variant {
             }
         }
         params.finish(&["format", "precision", "channels", "theta", "alpha", "lambda"])?;
-        Ok(Self { format, precision, channels, crop })
+        Ok(Self { format, precision, channels, part: Part(crop) })
     }
 
     /// From the parameters of `fresnel`.
@@ -117,7 +115,7 @@ impl Variant {
         }
         let precision = precision(&mut params, format)?;
         params.finish(&["format", "precision"])?;
-        Ok(Self { format, precision, channels: Channels::FRESNEL, crop: Vec::new() })
+        Ok(Self { format, precision, channels: Channels::FRESNEL, part: Part::default() })
     }
 
     /// Whether this is the payload itself.
@@ -125,7 +123,7 @@ impl Variant {
         self.format == Format::Npz
             && self.precision == Precision::F64
             && self.channels == Channels::ALL
-            && self.crop.is_empty()
+            && self.part.is_whole()
     }
 
     pub(crate) fn key(&self, version: &TableVersion) -> VariantKey {
@@ -135,7 +133,7 @@ impl Variant {
             format: self.format,
             precision: self.precision,
             channels: self.channels,
-            crop: self.crop.iter().map(|(q, range)| (*q, range.map(f64::to_bits))).collect(),
+            crop: self.part.0.iter().map(|(q, range)| (*q, range.map(f64::to_bits))).collect(),
         }
     }
 
@@ -152,7 +150,7 @@ impl Variant {
         } else if self.channels != whole {
             name += "-channels";
         }
-        if !self.crop.is_empty() {
+        if !self.part.is_whole() {
             name += "-part";
         }
         format!("{name}.{}", self.format.extension())
@@ -163,36 +161,16 @@ impl Variant {
     /// # Errors
     /// A crop that the table does not have, a precision that cannot hold it.
     pub(crate) fn encode(&self, version: &TableVersion) -> Result<Vec<u8>, ApiError> {
-        let table = self.cropped(version.table())?;
+        let table = self.part.of(version.table())?;
         let written = match self.format {
             Format::Npz => npz::write(&table, self.precision, self.channels),
-            Format::Ktx2 => ktx2::write(&table, self.precision, &self.manifest(version, &table)?),
+            Format::Ktx2 => ktx2::write(&table, self.precision, &self.part.manifest(version, &table)?),
             Format::Json => json_table::write(version, &table, self.precision, self.channels),
         };
         written.map_err(|source| match source {
             TableError::PrecisionLoss { .. } | TableError::BadEntry { .. } => ApiError::Unwritable { source },
             other => other.into(),
         })
-    }
-
-    fn cropped<'a>(&self, table: &'a Table) -> Result<Cow<'a, Table>, ApiError> {
-        let mut table = Cow::Borrowed(table);
-        for (quantity, [low, high]) in &self.crop {
-            table = Cow::Owned(table.crop(*quantity, *low, *high)?);
-        }
-        Ok(table)
-    }
-
-    /// The manifest to travel within a file. That of a part has the part's axes, and says which part it is; its digest
-    /// still names the version it is a part of.
-    fn manifest(&self, version: &TableVersion, table: &Table) -> Result<String, ApiError> {
-        let mut manifest = serde_json::to_value(version.manifest()).map_err(ApiError::internal)?;
-        if !self.crop.is_empty() {
-            manifest["axes"] = serde_json::to_value(table.axes()).map_err(ApiError::internal)?;
-            let crop = self.crop.iter().map(|(q, range)| (q.name().to_owned(), (*range).into()));
-            manifest["part"] = serde_json::Value::Object(crop.collect());
-        }
-        Ok(manifest.to_string())
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
-use ltc_table::{Channels, Precision, Quantity, Table, files, ktx2, npz};
+use ltc_table::{Channels, Part, Precision, Quantity, files, ktx2, npz};
 
 use crate::tables::Tables;
 
@@ -42,31 +42,21 @@ enum Format {
     Ktx2,
 }
 
-#[derive(Clone, Copy)]
-struct Crop {
-    quantity: Quantity,
-    low: f64,
-    high: f64,
-}
+/// A range of an axis.
+type Crop = (Quantity, [f64; 2]);
 
 impl Export {
     pub fn run(self, tables: &Tables) -> Result<()> {
         let catalogue = tables.catalogue()?;
         let version = catalogue.find(&self.table)?;
-        let mut table: Table = version.table().clone();
-        for Crop { quantity, low, high } in &self.crop {
-            table = table.crop(*quantity, *low, *high)?;
-        }
+        let part = Part(self.crop.clone());
+        let table = part.of(version.table())?;
         let bytes = match self.format {
             Format::Npz => npz::write(&table, self.precision, self.channels.unwrap_or(Channels::ALL))?,
             Format::Ktx2 if self.channels.is_some() => {
                 bail!("--channels is for npz; a ktx2 always holds m, magnitude and fresnel")
             }
-            Format::Ktx2 => {
-                let mut manifest = version.manifest().clone();
-                manifest.axes = table.axes().to_vec();
-                ktx2::write(&table, self.precision, &serde_json::to_string(&manifest)?)?
-            }
+            Format::Ktx2 => ktx2::write(&table, self.precision, &part.manifest(version, &table)?)?,
         };
         files::write_atomically(&self.output, &bytes)?;
         let (path, shape) = (self.output.display().to_string(), table.shape());
@@ -98,5 +88,5 @@ fn parse_crop(text: &str) -> Result<Crop> {
         .into_iter()
         .find(|q| q.name() == axis)
         .context("axis must be theta, phi, alpha or lambda")?;
-    Ok(Crop { quantity, low: low.parse().context("LOW")?, high: high.parse().context("HIGH")? })
+    Ok((quantity, [low.parse().context("LOW")?, high.parse().context("HIGH")?]))
 }

@@ -4,10 +4,12 @@ mod boundary;
 mod horizon;
 mod polygon;
 mod sample;
+mod textured;
 
 pub use horizon::Horizon;
 pub use polygon::Polygon;
 pub use sample::{LightSample, SampleLight};
+pub use textured::{TextureFetch, TextureFrame, TexturedPolygon};
 
 use crate::{Ltc, Real};
 

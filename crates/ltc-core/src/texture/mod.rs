@@ -1,0 +1,7 @@
+//! Textures of area lights, filtered in advance (2016 paper, §5.3).
+
+mod filter;
+mod level;
+mod prefiltered;
+
+pub use prefiltered::{PrefilteredTexture, TexelGrid};
