@@ -106,8 +106,8 @@ pub fn scaled(m: DMat3) -> DMat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ltc_table::{Floors, Mapping, Quantity};
     use ltc_core::{Ltc, Matrix, points::r2};
+    use ltc_table::{Floors, Mapping, Quantity};
 
     fn matrices() -> Vec<DMat3> {
         let rows = [

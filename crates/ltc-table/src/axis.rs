@@ -48,6 +48,16 @@ pub enum Mapping {
 }
 
 impl Mapping {
+    /// The name in manifests.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Sqrt => "sqrt",
+            Self::SqrtOneMinusCos => "sqrt_one_minus_cos",
+            Self::HalfTangent => "half_tangent",
+        }
+    }
+
     /// The mapped coordinate of a value.
     pub fn coordinate(self, value: f64) -> f64 {
         match self {
@@ -158,6 +168,13 @@ mod tests {
 
     const MAPPINGS: [Mapping; 4] =
         [Mapping::Linear, Mapping::Sqrt, Mapping::SqrtOneMinusCos, Mapping::HalfTangent];
+
+    #[test]
+    fn the_name_is_the_manifests() {
+        for mapping in MAPPINGS {
+            assert_eq!(serde_json::to_value(mapping).unwrap(), mapping.name());
+        }
+    }
 
     #[test]
     fn the_slope_is_the_difference_quotient() {
