@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use ltc_fit::{Cost, Forecast, Outlook, Progress};
 
 /// Time between two lines for machines.
-const LINE_EVERY: Duration = Duration::from_millis(500);
+const LINE_EVERY: Duration = Duration::from_millis(200);
 /// Units of the bar.
 const UNITS: u64 = 1000;
 

@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 
+mod albedo;
 mod bfgs;
 pub mod brdf;
 pub mod channels;
@@ -20,11 +21,16 @@ mod entry;
 mod error;
 mod fit;
 mod forecast;
+pub mod form;
 pub mod gauge;
 pub mod grid_errors;
 pub mod joint;
 mod lobe;
 pub mod measure;
+mod nelder_mead;
+pub mod objective;
+mod optimiser;
+pub mod path;
 mod plan;
 mod points;
 pub mod progress;
@@ -35,16 +41,18 @@ mod spec;
 pub mod spec_file;
 mod start;
 mod symmetry;
-mod tv;
 mod verify;
 
-pub use bfgs::Stop;
+pub use albedo::{DiskNode, DiskRule};
+pub use bfgs::{Point, Stop};
 pub use brdf::{Beckmann, Brdf, CharlieSheen, DisneyDiffuse, GgxFamily, OrenNayar};
-pub use entry::{EntryFit, fit_entry, refine_entry};
+pub use entry::{EntryFit, fit_entry, refine_by, refine_by_simplex, refine_entry};
 pub use error::FitError;
 pub use fit::{fit, fit_with, publish, publish_with};
 pub use forecast::{Forecast, Outlook};
 pub use lobe::Lobe;
+pub use objective::{Goal, Objective, total_variation, total_variation_gradient};
+pub use optimiser::Optimiser;
 pub use plan::{Cost, Limits, Plan};
 pub use points::DiskPoints;
 pub use progress::{Observer, Progress, silent};
@@ -53,7 +61,6 @@ pub use run::{EntryRecord, FitRun, FitState, Fitted, StageTime};
 pub use spec::FitSpec;
 pub use start::median_start;
 pub use symmetry::{Lattice, Node, Pattern, Tie};
-pub use tv::{total_variation, total_variation_gradient};
 pub use verify::{Verification, refit_digest, refit_plan, verify, verify_with};
 
 /// The unit direction of polar angle `theta` and azimuth `phi`.

@@ -1,8 +1,6 @@
 //! Lines that somebody garbled: an answer in [0, 1], or one line that says what is wrong. The body of `fuzz/lines`, on lines
 //! from a seed.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
-
 use ltc_core::points::SplitMix64;
 use ltc_lines::{Integration, lookup};
 

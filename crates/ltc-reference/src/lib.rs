@@ -36,6 +36,7 @@
 
 mod albedo;
 mod beckmann;
+mod bins;
 mod boundary;
 mod charlie;
 mod chart;
@@ -60,6 +61,7 @@ mod special;
 mod sphere;
 mod sphere_light;
 mod strip;
+mod transformed;
 mod tv;
 
 pub use albedo::{Albedo, directional_albedo};
@@ -85,4 +87,5 @@ pub use rect_light::{LightHit, RectLight};
 pub use sphere::integrate_sphere;
 pub use sphere_light::integrate_sphere_light;
 pub use strip::{ThinStrip, integrate_strip_area, integrate_strip_line};
+pub use transformed::{BaseShape, TransformedLobe};
 pub use tv::{ggx_total_variation, total_variation};

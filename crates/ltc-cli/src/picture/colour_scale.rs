@@ -15,6 +15,9 @@ const VIRIDIS: [Colour; 9] = [
     [253, 231, 37],
 ];
 
+/// Grey, which is not on the scale.
+const NO_NUMBER: Colour = [128, 128, 128];
+
 /// Colours for numbers from 0 to a round number.
 #[derive(Clone, Copy, Debug)]
 pub struct ColourScale {
@@ -23,7 +26,7 @@ pub struct ColourScale {
 }
 
 impl ColourScale {
-    /// A scale that reaches at least `max`, in four to ten round steps; to 1 where `max` is no number above 0.
+    /// A scale that reaches at least `max`, in at most ten round steps; to 1 where `max` is no number above 0.
     pub fn to(max: f64) -> Self {
         let max = if max > 0.0 && max.is_finite() { max } else { 1.0 };
         let tenth = 10.0_f64.powf((max / 10.0).log10().floor());
@@ -42,8 +45,11 @@ impl ColourScale {
         (0..=self.steps).map(|i| f64::from(i) * self.step)
     }
 
-    /// The colour of a number; those outside the scale have the colours of its ends.
+    /// The colour of a number; those outside the scale have the colours of its ends, NaN is grey.
     pub fn colour(&self, value: f64) -> Colour {
+        if value.is_nan() {
+            return NO_NUMBER;
+        }
         let place = (value / self.end()).clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
         let below = (place as usize).min(VIRIDIS.len() - 2);
         let within = place - below as f64;
@@ -59,7 +65,7 @@ mod tests {
     #[test]
     fn scales_are_round_and_reach_far_enough() {
         for (max, end, count) in
-            [(0.483, 0.5, 11), (0.21, 0.22, 12), (0.1, 0.1, 11), (3.0, 3.0, 7), (1.0, 1.0, 11)]
+            [(0.483, 0.5, 11), (0.21, 0.25, 6), (0.1, 0.1, 11), (3.0, 3.0, 7), (1.0, 1.0, 11)]
         {
             let scale = ColourScale::to(max);
             assert!((scale.end() - end).abs() < 1e-9, "{max}: {scale:?}");
@@ -76,6 +82,6 @@ mod tests {
         assert_eq!((scale.colour(0.0), scale.colour(0.5)), (VIRIDIS[0], VIRIDIS[8]));
         assert_eq!((scale.colour(-3.0), scale.colour(7.0)), (VIRIDIS[0], VIRIDIS[8]));
         assert_eq!(scale.colour(0.25), VIRIDIS[4]);
-        assert_eq!(scale.colour(f64::NAN), VIRIDIS[0]);
+        assert_eq!(scale.colour(f64::NAN), NO_NUMBER);
     }
 }

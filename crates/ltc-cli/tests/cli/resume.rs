@@ -17,7 +17,7 @@ fn slow(folder: &Path) -> String {
         .replace("len = 6", "len = 24")
         .replace("len = 5", "len = 24")
         .replace("samples = 64, iterations = 10", "samples = 512, iterations = 40")
-        .replace("steps = 20, queries = 64, samples = 32", "steps = 120, queries = 1024, samples = 128");
+        .replace("steps = 20, queries = 64, samples = 32", "steps = 400, queries = 1024, samples = 128");
     std::fs::write(&path, content).unwrap();
     path
 }
@@ -100,24 +100,20 @@ fn kills_and_interruptions_change_nothing() {
     running.until(at("entries", 1));
     running.signal("-KILL");
     running.end();
-    for (round, from) in [1, 20, 60].into_iter().enumerate() {
+    // Asked to end, it keeps what is done and says how to go on.
+    let moments = [(1, "-KILL"), (30, "-INT"), (60, "-KILL"), (90, "-TERM"), (120, "-KILL")];
+    for (round, (from, signal)) in moments.into_iter().enumerate() {
         let mut running = Running::start(&spec, &output);
         let said = running.until(at("joint refinement", from));
         assert!(round == 0 || resumed(&said), "{said:?}");
-        running.signal("-KILL");
-        running.end();
+        running.signal(signal);
+        let (code, words) = running.end();
+        if signal != "-KILL" {
+            assert_eq!(code, Some(if signal == "-INT" { 130 } else { 143 }), "{words}");
+            assert!(words.starts_with("interrupted; the same command goes on from here"), "{words}");
+        }
         assert_eq!(names_in(&output), [".checkpoints"], "no table, nothing else");
         checkpoint(&output);
-    }
-    // Asked to end, it says how to go on.
-    for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
-        let mut running = Running::start(&spec, &output);
-        running.until(at("joint refinement", 1));
-        running.signal(signal);
-        let (ended, words) = running.end();
-        assert_eq!(ended, Some(code), "{words}");
-        assert!(words.starts_with("interrupted; the same command goes on from here"), "{words}");
-        assert_eq!(names_in(&output), [".checkpoints"]);
     }
     let run = ltc(&["fit", &spec, "-o", text(&output), "--json", "--threads", "2"]).good();
     let said: Vec<Value> = run.err.lines().map(|line| serde_json::from_str(line).unwrap()).collect();

@@ -1,5 +1,7 @@
 //! The clamped cosine.
 
+use core::f64::consts::FRAC_1_PI;
+
 use super::{Base, LinearlyTransformed, PolygonBase};
 use crate::{Horizon, Light as _, Polygon, Real, Vector};
 
@@ -14,12 +16,14 @@ use crate::{Horizon, Light as _, Polygon, Real, Vector};
 pub struct ClampedCosine;
 
 impl<R: Real> Base<R> for ClampedCosine {
+    const PEAK: f64 = FRAC_1_PI;
+
     fn density(w: R::Vec3, k: R) -> R {
         if w.z() <= R::ZERO {
             return R::ZERO;
         }
         let inverse_squared = R::ONE / w.dot(w);
-        (w.z() * inverse_squared * k) * inverse_squared * R::of(core::f64::consts::FRAC_1_PI)
+        (w.z() * inverse_squared * k) * inverse_squared * R::of(<Self as Base<R>>::PEAK)
     }
 
     fn sample(u: [R; 2]) -> R::Vec3 {

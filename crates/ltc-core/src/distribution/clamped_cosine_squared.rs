@@ -1,5 +1,7 @@
 //! The clamped squared cosine.
 
+use core::f64::consts::PI;
+
 use super::polygon::Region;
 use super::{Base, LinearlyTransformed, PolygonBase};
 use crate::{Horizon, Polygon, Real, Vector};
@@ -21,13 +23,15 @@ use crate::{Horizon, Polygon, Real, Vector};
 pub struct ClampedCosineSquared;
 
 impl<R: Real> Base<R> for ClampedCosineSquared {
+    const PEAK: f64 = 1.5 / PI;
+
     fn density(w: R::Vec3, k: R) -> R {
         if w.z() <= R::ZERO {
             return R::ZERO;
         }
         let length = w.length();
         let cosine = w.z() / length;
-        k / length / length * cosine / length * cosine * R::of(1.5 / core::f64::consts::PI)
+        k / length / length * cosine / length * cosine * R::of(<Self as Base<R>>::PEAK)
     }
 
     /// `z = (1 − u)^(1/3)`; the radius by `1 − z² = u (1 + z)/(1 + z + z²)`, which does not cancel at the pole.
@@ -51,6 +55,6 @@ impl<R: Real> PolygonBase<R> for ClampedCosineSquared {
     ) -> R {
         let region = Region::of(distribution, polygon, horizon);
         let moment = region.solid_angle + region.axial_boundary;
-        (moment * R::of(0.5 / core::f64::consts::PI)).clamped(R::ZERO, R::ONE)
+        R::of(moment * 0.5 / PI).clamped(R::ZERO, R::ONE)
     }
 }

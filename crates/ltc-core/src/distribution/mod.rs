@@ -67,6 +67,9 @@ pub trait ClosedForm<R: Real>: Distribution<R> {
 ///
 /// It is a type without values: every base of the paper is one shape.
 pub trait Base<R: Real>: Copy + Debug + PartialEq + Send + Sync + 'static {
+    /// The largest value of `Do`, in 1/sr.
+    const PEAK: f64;
+
     /// `Do(w/‖w‖) · k / ‖w‖³` for a vector `w` of any length above 0 and a factor `k`: the density of eq. 1 with
     /// `w = M⁻¹ω`, `k = |M⁻¹|`. For unit `w` and k = 1 it is `Do`.
     ///

@@ -5,6 +5,7 @@ use core::marker::PhantomData;
 use glam::DVec3;
 
 use super::{Base, Distribution, PolygonBase};
+use crate::light::widen;
 use crate::{Horizon, InputError, Matrix, Polygon, Real, Vector};
 
 /// A base distribution `Do` whose directions are moved by a matrix `M`, `ω = Mωo / ‖Mωo‖`:
@@ -53,23 +54,20 @@ impl<R: Real, B: Base<R>> LinearlyTransformed<R, B> {
         }
         // In f64 for either precision: the minors of a narrow lobe cancel, and with f32 products the determinant would be
         // wrong by ε · cond² (six parts in 1e4 at a condition of 100). Polygons do not see that scale; lines do.
-        let wide = |c: R::Vec3| DVec3::new(c.x().to_f64(), c.y().to_f64(), c.z().to_f64()) / largest.to_f64();
-        let [c0, c1, c2] = columns.map(wide);
+        let [c0, c1, c2] = columns.map(|c| widen::<R>(c) / largest.to_f64());
         let rows = [c1.cross(c2), c2.cross(c0), c0.cross(c1)];
         let determinant = c0.dot(rows[0]);
         let inverse_scale = 1.0 / determinant;
-        let round = |v: DVec3| R::Vec3::new(R::of(v.x), R::of(v.y), R::of(v.z));
-        let [r0, r1, r2] = rows.map(|r| round(r * inverse_scale));
+        let [r0, r1, r2] = rows.map(|r| narrow::<R>(r * inverse_scale));
         let inverse_determinant = R::of(inverse_scale);
-        // ‖Mω‖ ≤ 3, so no density exceeds 27/π of the inverse determinant.
         let valid = determinant > 0.0
-            && (R::of(32.0) * inverse_determinant).is_finite()
+            && peak_bound::<R, B>(inverse_determinant).is_finite()
             && [r0, r1, r2].iter().all(|r| r.is_finite());
         if !valid {
             return Err(InputError::SingularMatrix { determinant });
         }
         Ok(Self {
-            target_from_base: R::Mat3::from_columns(round(c0), round(c1), round(c2)),
+            target_from_base: R::Mat3::from_columns(narrow::<R>(c0), narrow::<R>(c1), narrow::<R>(c2)),
             base_from_target: R::Mat3::from_columns(r0, r1, r2).transposed(),
             inverse_determinant,
             base: PhantomData,
@@ -104,9 +102,11 @@ impl<R: Real, B: Base<R>> LinearlyTransformed<R, B> {
         self.inverse_determinant
     }
 
-    /// Density at the unit direction `w`, in 1/sr.
+    /// Density at the unit direction `w`, in 1/sr. Finite and not negative for every `w`.
     pub fn density(&self, w: R::Vec3) -> R {
-        B::density(self.base_from_target.apply(w), self.inverse_determinant)
+        let density = B::density(self.base_from_target.apply(w), self.inverse_determinant);
+        // M⁻¹w of a matrix that is nearly singular in this precision can cancel to nothing.
+        if density.is_finite() { density } else { peak_bound::<R, B>(self.inverse_determinant) }
     }
 
     /// A direction of density [`LinearlyTransformed::density`], from `u` ∈ [0, 1)² (2016 paper, Algorithm 1).
@@ -135,6 +135,17 @@ impl<R: Real, B: Base<R>> LinearlyTransformed<R, B> {
     {
         B::integrate_polygon(self, polygon, horizon)
     }
+}
+
+/// `v`, rounded.
+#[inline]
+fn narrow<R: Real>(v: DVec3) -> R::Vec3 {
+    R::Vec3::new(R::of(v.x), R::of(v.y), R::of(v.z))
+}
+
+/// No density exceeds this: ‖M⁻¹ω‖ ≥ ⅓ for a matrix whose largest entry is 1.
+fn peak_bound<R: Real, B: Base<R>>(inverse_determinant: R) -> R {
+    R::of(27.0 * B::PEAK) * inverse_determinant
 }
 
 impl<R: Real, B: Base<R>> Distribution<R> for LinearlyTransformed<R, B> {

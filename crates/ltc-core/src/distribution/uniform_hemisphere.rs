@@ -1,5 +1,7 @@
 //! The uniform hemisphere.
 
+use core::f64::consts::PI;
+
 use super::polygon::Region;
 use super::{Base, LinearlyTransformed, PolygonBase};
 use crate::{Horizon, Polygon, Real, Vector};
@@ -21,12 +23,14 @@ use crate::{Horizon, Polygon, Real, Vector};
 pub struct UniformHemisphere;
 
 impl<R: Real> Base<R> for UniformHemisphere {
+    const PEAK: f64 = 0.5 / PI;
+
     fn density(w: R::Vec3, k: R) -> R {
         if w.z() <= R::ZERO {
             return R::ZERO;
         }
         let length = w.length();
-        k / length / length / length * R::of(0.5 / core::f64::consts::PI)
+        k / length / length / length * R::of(<Self as Base<R>>::PEAK)
     }
 
     fn sample(u: [R; 2]) -> R::Vec3 {
@@ -44,6 +48,6 @@ impl<R: Real> PolygonBase<R> for UniformHemisphere {
         horizon: Horizon,
     ) -> R {
         let region = Region::of(distribution, polygon, horizon);
-        (region.solid_angle * R::of(0.5 / core::f64::consts::PI)).clamped(R::ZERO, R::ONE)
+        R::of(region.solid_angle * 0.5 / PI).clamped(R::ZERO, R::ONE)
     }
 }

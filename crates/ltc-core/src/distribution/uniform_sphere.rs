@@ -1,5 +1,7 @@
 //! The uniform sphere.
 
+use core::f64::consts::PI;
+
 use super::polygon::Region;
 use super::{Base, LinearlyTransformed, PolygonBase};
 use crate::{Horizon, Polygon, Real, Vector};
@@ -23,9 +25,11 @@ use crate::{Horizon, Polygon, Real, Vector};
 pub struct UniformSphere;
 
 impl<R: Real> Base<R> for UniformSphere {
+    const PEAK: f64 = 0.25 / PI;
+
     fn density(w: R::Vec3, k: R) -> R {
         let length = w.length();
-        k / length / length / length * R::of(0.25 / core::f64::consts::PI)
+        k / length / length / length * R::of(<Self as Base<R>>::PEAK)
     }
 
     fn sample(u: [R; 2]) -> R::Vec3 {
@@ -43,6 +47,6 @@ impl<R: Real> PolygonBase<R> for UniformSphere {
         horizon: Horizon,
     ) -> R {
         let region = Region::of(distribution, polygon, Horizon { cosine: false, ..horizon });
-        (region.solid_angle * R::of(0.25 / core::f64::consts::PI)).clamped(R::ZERO, R::of(0.5))
+        R::of(region.solid_angle * 0.25 / PI).clamped(R::ZERO, R::of(0.5))
     }
 }

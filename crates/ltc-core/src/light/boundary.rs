@@ -36,7 +36,7 @@ pub(super) fn horizon_point<R: Real>(p: R::Vec3, q: R::Vec3) -> R::Vec3 {
 
 /// `v`, widened.
 #[inline]
-pub(super) fn widen<R: Real>(v: R::Vec3) -> DVec3 {
+pub(crate) fn widen<R: Real>(v: R::Vec3) -> DVec3 {
     DVec3::new(v.x().to_f64(), v.y().to_f64(), v.z().to_f64())
 }
 

@@ -108,19 +108,21 @@ impl<L: Lane> CosineSum<L> {
         }
         let magnitude = cosine.abs();
         let (larger, smaller) = (magnitude.max(sine), magnitude.min(sine));
-        let inverse = zero.lit(1.0) / (length * larger).max(zero.lit(L::TINY));
+        let inverse = (length * larger).max(zero.lit(L::TINY)).reciprocal();
         let theta = unfold::<L, K>(smaller * length * inverse, sine, cosine);
         self.sum = theta.mul_add(rise * larger * inverse, self.sum);
     }
 
-    /// The fraction, from whichever side the light is seen.
+    /// The fraction, from whichever side the light is seen. `CUT`: as for the arcs.
     #[inline(always)]
-    pub fn fraction<K: Arctangent>(&self, facing: L) -> L {
-        let ([x, y], [u, v]) = (self.exit, self.entry);
-        let closing = angle::<L, K>((x * v - y * u).abs(), x.mul_add(u, y * v));
+    pub fn fraction<K: Arctangent, const CUT: bool>(&self, facing: L) -> L {
         let zero = facing.lit(0.0);
-        let edges = L::select(zero.less(facing), -self.sum, self.sum);
-        let fraction = (edges + closing) * zero.lit(0.5 / core::f64::consts::PI);
+        let mut sum = L::select(zero.less(facing), -self.sum, self.sum);
+        if CUT {
+            let ([x, y], [u, v]) = (self.exit, self.entry);
+            sum = sum + angle::<L, K>((x * v - y * u).abs(), x.mul_add(u, y * v));
+        }
+        let fraction = sum * zero.lit(0.5 / core::f64::consts::PI);
         fraction.max(zero).min(zero.lit(1.0))
     }
 }
@@ -142,9 +144,9 @@ impl<L: Lane> SurfaceGap<L> {
         Self { exit: [zero; 3], entry: [zero; 3], exit_plan: [zero; 2], entry_plan: [zero; 2] }
     }
 
-    /// Adds what of the edge is above the surface to `sum`.
+    /// Adds what of the edge is above the surface to `sum`. `CUT`: as for its arcs.
     #[inline(always)]
-    pub fn edge<K: Arctangent>(&mut self, edge: &Edge<L>, sum: &mut CosineSum<L>) {
+    pub fn edge<K: Arctangent, const CUT: bool>(&mut self, edge: &Edge<L>, sum: &mut CosineSum<L>) {
         let Edge { p, q, a, b, normal } = *edge;
         let zero = p[2].lit(0.0);
         let none = [zero; 3];
@@ -163,15 +165,15 @@ impl<L: Lane> SurfaceGap<L> {
         // An edge that is gone stays as a point.
         let from = choose(enters, point, a);
         let to = choose(exits, point, choose(L::and(a_below, b_below), a, b));
-        sum.arc::<K, true>(from, to, times(normal, kept));
+        sum.arc::<K, CUT>(from, to, times(normal, kept));
     }
 
     /// Adds the arc along the surface's horizon.
     #[inline(always)]
-    pub fn close<K: Arctangent>(&self, lobe: &Lobe<L>, sum: &mut CosineSum<L>) {
+    pub fn close<K: Arctangent, const CUT: bool>(&self, lobe: &Lobe<L>, sum: &mut CosineSum<L>) {
         let (from, to) = (self.exit_plan, self.entry_plan);
         let turn = from[0].mul_add(to[1], -(from[1] * to[0]));
-        sum.arc::<K, true>(self.exit, self.entry, times(lobe.horizon, turn));
+        sum.arc::<K, CUT>(self.exit, self.entry, times(lobe.horizon, turn));
     }
 }
 
@@ -187,27 +189,43 @@ pub(super) fn integrate<L: Lane, K: Arctangent>(
     limits: &Limits,
 ) -> (L, L::Mask) {
     let edges = edges(vertices, lobe);
-    let mut sum = CosineSum::new(view.facing.lit(0.0));
-    if surface && any_below(&vertices[0], &vertices[1], &vertices[2], &vertices[3]) {
-        let mut gap = SurfaceGap::new(view.facing.lit(0.0));
-        for edge in &edges {
-            gap.edge::<K>(edge, &mut sum);
-        }
-        gap.close::<K>(lobe, &mut sum);
-    } else if any_below(&edges[0].a, &edges[1].a, &edges[2].a, &edges[3].a) {
-        for e in &edges {
-            sum.arc::<K, true>(e.a, e.b, e.normal);
-        }
-    } else {
-        for e in &edges {
-            sum.arc::<K, false>(e.a, e.b, e.normal);
-        }
-    }
+    let below_surface = surface && any_below(&vertices[0], &vertices[1], &vertices[2], &vertices[3]);
+    // Points cut off by the surface lie between vertices: when these are above, so are those.
+    let cut = any_below(&edges[0].a, &edges[1].a, &edges[2].a, &edges[3].a);
+    let fraction = match (below_surface, cut) {
+        (false, false) => around::<L, K, false, false>(&edges, view, lobe),
+        (false, true) => around::<L, K, false, true>(&edges, view, lobe),
+        (true, false) => around::<L, K, true, false>(&edges, view, lobe),
+        (true, true) => around::<L, K, true, true>(&edges, view, lobe),
+    };
     let mut hard = view.hard;
     for edge in &edges {
         hard = L::or(hard, edge.flat(limits));
     }
-    (sum.fraction::<K>(view.facing), hard)
+    (fraction, hard)
+}
+
+/// The fraction, from the edges. `SURFACE`, `CUT`: something may be below the one horizon or the other.
+#[inline(always)]
+fn around<L: Lane, K: Arctangent, const SURFACE: bool, const CUT: bool>(
+    edges: &[Edge<L>; 4],
+    view: &View<L>,
+    lobe: &Lobe<L>,
+) -> L {
+    let zero = view.facing.lit(0.0);
+    let mut sum = CosineSum::new(zero);
+    if SURFACE {
+        let mut gap = SurfaceGap::new(zero);
+        for edge in edges {
+            gap.edge::<K, CUT>(edge, &mut sum);
+        }
+        gap.close::<K, CUT>(lobe, &mut sum);
+    } else {
+        for e in edges {
+            sum.arc::<K, CUT>(e.a, e.b, e.normal);
+        }
+    }
+    sum.fraction::<K, CUT>(view.facing)
 }
 
 #[inline(always)]

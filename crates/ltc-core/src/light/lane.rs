@@ -15,6 +15,8 @@ pub(super) trait Lane:
     fn lit(self, value: f64) -> Self;
     fn abs(self) -> Self;
     fn sqrt(self) -> Self;
+    /// 1 / `self`, to the last digits but one.
+    fn reciprocal(self) -> Self;
     fn max(self, other: Self) -> Self;
     fn min(self, other: Self) -> Self;
     /// `self · b + c`, rounded once or twice.
@@ -46,6 +48,10 @@ impl Lane for f64 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        1.0 / self
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {

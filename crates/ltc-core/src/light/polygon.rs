@@ -9,6 +9,19 @@ use glam::DVec3;
 ///
 /// Any simple polygon of three or more vertices, convex or not. Vertices run counter-clockwise seen from the emitting
 /// side. It emits the same radiance in all directions.
+///
+/// # Precision
+/// Both precisions compute in `f64`, where products of `f32` are exact; only the angles of an `f32` light are as short as
+/// its result (to 2.4e-9). Against the oracle `f64` is within 1e-9, mostly 1e-13. Against `f64` on the same inputs `f32` is
+/// within 2e-5, times cond(M)/100 where that is above 1, over scales of 1e±6, widths of lobes from 1e-4, 89.99° off the
+/// normal, aspects of 1e5, 1e-7 of the light's size off its plane, and 1e±3 of its size away (a tenth of that is measured;
+/// `tests/polygon_precision.rs`). Rounding the inputs to `f32` costs as much again, more at grazing angles, and near the
+/// light's plane all there is: it moves the point to the other side.
+///
+/// # Continuity
+/// A light that sinks below the surface goes out without a jump. A point that crosses the light's plane inside its outline
+/// sees half of all directions before and the other half after: of the lobe the two parts that sum to 1. Just in the plane,
+/// within 8 ε of `f64`, a light is seen edge-on and dark.
 #[derive(Clone, Copy, Debug)]
 pub struct Polygon<'a, R: Real> {
     vertices: &'a [R::Vec3],

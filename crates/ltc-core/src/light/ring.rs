@@ -8,6 +8,9 @@ use super::convex::{CosineSum, Edge, Limits, Lobe, SurfaceGap, View};
 use super::lane::{Lane as _, Triple, cross, minus};
 use super::simd::Wide;
 
+/// Nothing is lost in `f64` this far from the degenerate.
+const LIMITS: Limits = Limits { plane: 1e-14, width: 1e-26, range: [1e-10, 1e10], nearest: 0.0, sine: 1e-4 };
+
 /// A number of each edge.
 type Four<S> = Wide<S, f64x4<S>>;
 
@@ -19,9 +22,8 @@ pub(super) fn integrate_single(
     vertices: &[Triple<f64>; 4],
     columns: &[Triple<f64>; 3],
     surface: bool,
-    limits: &Limits,
 ) -> Option<(f64, bool)> {
-    dispatch!(Level::new(), simd => edges_at_once::<_, Single>(simd, vertices, columns, surface, limits))
+    dispatch!(Level::new(), simd => edges_at_once::<_, Single>(simd, vertices, columns, surface))
 }
 
 /// [`integrate_single`] with angles to `f64`'s digits.
@@ -29,9 +31,8 @@ pub(super) fn integrate_double(
     vertices: &[Triple<f64>; 4],
     columns: &[Triple<f64>; 3],
     surface: bool,
-    limits: &Limits,
 ) -> Option<(f64, bool)> {
-    dispatch!(Level::new(), simd => edges_at_once::<_, Double>(simd, vertices, columns, surface, limits))
+    dispatch!(Level::new(), simd => edges_at_once::<_, Double>(simd, vertices, columns, surface))
 }
 
 #[inline(always)]
@@ -40,33 +41,45 @@ fn edges_at_once<S: Simd, K: Arctangent>(
     vertices: &[Triple<f64>; 4],
     columns: &[Triple<f64>; 3],
     surface: bool,
-    limits: &Limits,
 ) -> Option<(f64, bool)> {
-    let View { facing, hard } = View::new(vertices, limits);
+    let View { facing, hard } = View::new(vertices, &LIMITS);
     let lobe = Lobe::new(*columns);
     let edge = ring(simd, vertices, columns);
     let zero = Four::of(f64x4::splat(simd, 0.0));
+    let below_surface = surface && edge.p[2].less(zero).any_true();
+    let fraction = match (below_surface, edge.a[2].less(zero).any_true()) {
+        (false, false) => around::<S, K, false, false>(zero, &edge, facing, &lobe),
+        (false, true) => around::<S, K, false, true>(zero, &edge, facing, &lobe),
+        (true, false) => around::<S, K, true, false>(zero, &edge, facing, &lobe),
+        (true, true) => around::<S, K, true, true>(zero, &edge, facing, &lobe),
+    };
+    (!hard && !edge.flat(&LIMITS).any_true()).then_some((fraction, facing > 0.0))
+}
+
+/// The fraction, from the edges. `SURFACE`, `CUT`: something may be below the one horizon or the other.
+#[inline(always)]
+fn around<S: Simd, K: Arctangent, const SURFACE: bool, const CUT: bool>(
+    zero: Four<S>,
+    edge: &Edge<Four<S>>,
+    facing: f64,
+    lobe: &Lobe<f64>,
+) -> f64 {
     let mut sums = CosineSum::new(zero);
-    let mut total;
-    if surface && edge.p[2].less(zero).any_true() {
-        let mut gaps = SurfaceGap::new(zero);
-        gaps.edge::<K>(&edge, &mut sums);
-        total = reduce(&sums);
-        let gap = SurfaceGap {
-            exit: [sum(gaps.exit[0]), sum(gaps.exit[1]), sum(gaps.exit[2])],
-            entry: [sum(gaps.entry[0]), sum(gaps.entry[1]), sum(gaps.entry[2])],
-            exit_plan: [sum(gaps.exit_plan[0]), sum(gaps.exit_plan[1])],
-            entry_plan: [sum(gaps.entry_plan[0]), sum(gaps.entry_plan[1])],
-        };
-        gap.close::<K>(&lobe, &mut total);
-    } else if edge.a[2].less(zero).any_true() {
-        sums.arc::<K, true>(edge.a, edge.b, edge.normal);
-        total = reduce(&sums);
-    } else {
-        sums.arc::<K, false>(edge.a, edge.b, edge.normal);
-        total = reduce(&sums);
+    if !SURFACE {
+        sums.arc::<K, CUT>(edge.a, edge.b, edge.normal);
+        return reduce(&sums).fraction::<K, CUT>(facing);
     }
-    (!hard && !edge.flat(limits).any_true()).then(|| (total.fraction::<K>(facing), facing > 0.0))
+    let mut gaps = SurfaceGap::new(zero);
+    gaps.edge::<K, CUT>(edge, &mut sums);
+    let gap = SurfaceGap {
+        exit: [sum(gaps.exit[0]), sum(gaps.exit[1]), sum(gaps.exit[2])],
+        entry: [sum(gaps.entry[0]), sum(gaps.entry[1]), sum(gaps.entry[2])],
+        exit_plan: [sum(gaps.exit_plan[0]), sum(gaps.exit_plan[1])],
+        entry_plan: [sum(gaps.entry_plan[0]), sum(gaps.entry_plan[1])],
+    };
+    let mut total = reduce(&sums);
+    gap.close::<K, CUT>(lobe, &mut total);
+    total.fraction::<K, CUT>(facing)
 }
 
 /// The edges, from each vertex to the next.

@@ -13,6 +13,8 @@ pub(super) trait Element: SimdFloatElement {
     fn constant(value: f64) -> Self;
     /// What a divisor is raised to.
     const TINY: f64;
+    /// Whether a reciprocal is estimated (to 8 bits or more) and refined rather than divided for: twice as fast.
+    const ESTIMATE: bool;
 }
 
 impl Element for f32 {
@@ -21,6 +23,7 @@ impl Element for f32 {
         value as f32
     }
     const TINY: f64 = 1e-37;
+    const ESTIMATE: bool = true;
 }
 
 impl Element for f64 {
@@ -29,6 +32,7 @@ impl Element for f64 {
         value
     }
     const TINY: f64 = 1e-300;
+    const ESTIMATE: bool = false;
 }
 
 /// A vector at one level of instructions.
@@ -90,6 +94,18 @@ where
     #[inline(always)]
     fn sqrt(self) -> Self {
         Self::of(self.0.sqrt())
+    }
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        let one = self.lit(1.0);
+        if !V::Element::ESTIMATE {
+            return one / self;
+        }
+        // Newton's steps double the digits: 8, 16, all.
+        let mut estimate = Self::of(self.0.approximate_recip());
+        estimate = (-(self * estimate)).mul_add(estimate, estimate + estimate);
+        let rest = (-self).mul_add(estimate, one);
+        estimate.mul_add(rest, estimate)
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
