@@ -179,7 +179,8 @@ fn panel(svg: &mut String, [left, top]: [f64; 2], sweep: Sweep, values: &[f64], 
         );
     }
     for (i, colour) in COLOURS.iter().enumerate() {
-        for (dash, error) in [("none", (|o: &Outcome| o.f32_max) as fn(&Outcome) -> f64), ("5 4", |o| o.f64_max)]
+        for (dash, error) in
+            [("none", (|o: &Outcome| o.f32_max) as fn(&Outcome) -> f64), ("5 4", |o| o.f64_max)]
         {
             let points: Vec<String> = values
                 .iter()
