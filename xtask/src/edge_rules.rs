@@ -33,6 +33,8 @@ pub const RULES: &[Rule] = &[
     // The shipped tables are data and its reader.
     Rule::OursOnly { from: "ltc-tables", allowed: &["ltc-table"] },
     Rule::Never { from: "ltc-tables", targets: &["wgpu", "axum", "tokio", "rayon"] },
+    // Lines are understood without a GPU, so that fuzzers build fast.
+    Rule::OursOnly { from: "ltc-lines", allowed: &["ltc-core", "ltc-table"] },
     // Fitting runs on machines without a GPU, and in workers without a server.
     Rule::Never { from: "ltc-fit", targets: &["wgpu", "axum", "tokio"] },
     // Shading takes tables as they are, wherever they come from.

@@ -49,9 +49,10 @@ pub use frame::ShadingFrame;
 pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
 pub use light::{
-    Cubic, EdgeForm, Exact, Horizon, Light, LightSample, Line, LineCylinder, LineSample, LtcBatch, Polygon,
-    PolygonSampler, PublishedRational, Quad, QuadBatch, Rational, SampleLight, Sides, Strip, TextureFetch,
-    TextureFrame, TexturedPolygon, clipped_sphere, clipped_sphere_fit,
+    AnyLight, Cubic, Cylinder, Disk, EdgeForm, Ellipse, Exact, Horizon, Light, LightSample, Line,
+    LineCylinder, LineSample, LtcBatch, Polygon, PolygonSampler, PublishedRational, Quad, QuadBatch,
+    Rational, SampleLight, Sides, Sphere, Strip, TextureFetch, TextureFrame, TexturedPolygon, clipped_sphere,
+    clipped_sphere_fit,
 };
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};

@@ -127,6 +127,8 @@ pub trait Real:
     fn product_difference(a: Self, b: Self, c: Self, d: Self) -> Self;
     /// The largest power of two that is not above `|self|`; 0 below [`Real::TINY`]. Scaling by it rounds nothing.
     fn floor_power_of_two(self) -> Self;
+    /// Inverse hyperbolic tangent, for |self| < 1.
+    fn atanh(self) -> Self;
     /// The larger; the other one where one is NaN.
     fn max(self, other: Self) -> Self;
     /// The smaller; the other one where one is NaN.
@@ -203,6 +205,10 @@ macro_rules! impl_real {
             fn floor_power_of_two(self) -> Self {
                 // The bits of infinity are those of the exponent.
                 $real::from_bits(self.to_bits() & $real::INFINITY.to_bits())
+            }
+            #[inline]
+            fn atanh(self) -> Self {
+                $real::atanh(self)
             }
             #[inline]
             fn max(self, other: Self) -> Self {

@@ -44,6 +44,7 @@ pub fn grid_errors(
     let (centre_tv_mean, centre_tv_max) = absolute(&centres, |m| m.tv);
     let (centre_magnitude_mean, centre_magnitude_max) = absolute(&centres, |m| m.magnitude);
     let (centre_fresnel_mean, centre_fresnel_max) = absolute(&centres, |m| m.fresnel);
+    let steps = steps(table);
     Ok(GridErrors {
         node_magnitude_mean,
         node_magnitude_bias: mean(&signed(&nodes, |m| m.magnitude)),
@@ -57,6 +58,8 @@ pub fn grid_errors(
         centre_magnitude_max,
         centre_fresnel_mean,
         centre_fresnel_max,
+        step_mean: mean(&steps),
+        step_max: maximum(&steps),
     })
 }
 
@@ -118,6 +121,23 @@ pub fn centre_misses(
         .collect()
 }
 
+/// `|M₁ − M₂| / (|M₁| + |M₂|)` of every two entries beside each other, in table order, axis by axis.
+fn steps(table: &Table) -> Vec<f64> {
+    let size = |m: DMat3| m.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
+    let m = table.m();
+    let mut steps = Vec::new();
+    let mut stride = 1;
+    for axis in table.axes().iter().rev() {
+        let inner = (0..m.len()).filter(|i| i / stride % axis.len + 1 < axis.len);
+        steps.extend(inner.map(|i| {
+            let (a, b) = (m[i], m[i + stride]);
+            size(a - b) / (size(a) + size(b)).max(f64::MIN_POSITIVE)
+        }));
+        stride *= axis.len;
+    }
+    steps
+}
+
 /// The centre of a cell, floors not applied.
 fn centre(axes: &[Axis], index: usize) -> Node {
     let mut node = Node { theta: 0.0, phi: 0.0, alpha: 1.0, lambda: 1.0 };
@@ -141,6 +161,23 @@ fn centre(axes: &[Axis], index: usize) -> Node {
 mod tests {
     use super::*;
     use ltc_table::Mapping;
+
+    #[test]
+    fn steps_are_those_between_neighbours() {
+        let axes = vec![
+            Axis::full(Quantity::Theta, Mapping::Linear, 3),
+            Axis::full(Quantity::Alpha, Mapping::Linear, 2),
+        ];
+        // Entry (i, j) is (1 + i) times the identity: no step along α, 1/3 and 1/5 along θ.
+        let m = (0..6).map(|k| DMat3::IDENTITY * f64::from(1 + k / 2)).collect();
+        let table = Table::new(axes, m, vec![1.0; 6], vec![0.0; 6], ltc_table::CellStats::default()).unwrap();
+        let found = steps(&table);
+        assert_eq!(found.len(), 3 + 4);
+        assert!(found[..3].iter().all(|step| *step == 0.0), "{found:?}");
+        for (step, expected) in found[3..].iter().zip([1.0 / 3.0, 1.0 / 3.0, 0.2, 0.2]) {
+            assert!((step - expected).abs() < 1e-15, "{found:?}");
+        }
+    }
 
     #[test]
     fn centres_lie_half_way_in_every_cell() {

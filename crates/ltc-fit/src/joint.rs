@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use crate::{
     Brdf, DiskPoints, FitError, Lattice, Lobe, Observer, Progress, draw, progress::JOINT, regular,
-    tv::total_variation_gradient,
+    total_variation_gradient,
 };
 
 /// Settings of [`refine`].

@@ -3,7 +3,8 @@
 use ltc_table::digest::digest;
 
 use crate::{
-    Brdf, FitError, FitSpec, Lattice,
+    Brdf, FitError, FitSpec, Lattice, Objective,
+    entries::EntryStage,
     progress::{CHANNELS, ENTRIES, JOINT, MEASUREMENT},
 };
 
@@ -57,6 +58,16 @@ impl<'a> Plan<'a> {
         &self.owners
     }
 
+    /// The first stage.
+    ///
+    /// # Errors
+    /// None for a valid specification, which this one is.
+    pub fn entry_stage(&self) -> Result<EntryStage<'_>, FitError> {
+        let (objective, settings) = (self.spec.objective()?, self.spec.entries);
+        let (axes, lattice, owners) = (&self.spec.axes, &self.lattice, &self.owners);
+        Ok(EntryStage { brdf: self.brdf, axes, lattice, owners, objective, settings })
+    }
+
     /// What names the specification: the SHA-256 of its JSON, as `sha256:<hex>`.
     pub fn digest(&self) -> String {
         digest(&serde_json::to_vec(&self.spec).unwrap_or_default())
@@ -98,6 +109,10 @@ impl Cost {
         const DRAW: f64 = 15e-9;
         const COMPARE: f64 = 2e-9;
         const DERIVE: f64 = 5e-9;
+        /// Seconds for each sample that is compared by sliced Wasserstein, all axes together.
+        const SORT: f64 = 2e-6;
+        /// Fits of an entry when it is also fitted from where its neighbours ended.
+        const CONTINUED: f64 = 9.0;
         /// Seconds of a joint step besides its samples.
         const STEP: f64 = 6e-3;
         /// Comparisons that the fit of an entry takes on average.
@@ -112,6 +127,10 @@ impl Cost {
         let product = |a: usize, b: usize| a as f64 * b as f64;
         let alone = entries as f64 * spec.entries.samples as f64;
         let comparisons = COMPARISONS.min(3.0 * spec.entries.iterations as f64);
+        // A comparison by sliced Wasserstein sorts as many samples for each of its axes.
+        let sliced = spec.objective == Objective::SlicedWasserstein.name();
+        let alone_again = if spec.entries.continuation { CONTINUED } else { 1.0 };
+        let derive = if sliced { SORT } else { DERIVE };
         let nodes_and_queries =
             |samples: usize, queries: usize| entries as f64 * samples as f64 + product(samples, queries);
         Self {
@@ -121,7 +140,7 @@ impl Cost {
                 .saturating_add((joint.queries as u64).saturating_mul(PER_QUERY))
                 .saturating_add((channels.queries as u64).saturating_mul(PER_ROW)),
             seconds: [
-                (ENTRIES, alone * (DRAW + comparisons * DERIVE)),
+                (ENTRIES, alone_again * alone * (DRAW + comparisons * derive)),
                 (
                     JOINT,
                     joint.steps as f64 * (STEP + product(joint.queries, joint.samples) * (DRAW + DERIVE)),

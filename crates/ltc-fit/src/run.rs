@@ -14,9 +14,6 @@ use crate::{
     progress::{CHANNELS, ENTRIES, JOINT, MEASUREMENT},
 };
 
-/// Entries that are fitted in one piece: a second's work or less, and enough for many threads.
-const PIECE: usize = 256;
-
 /// How one entry that owns itself was fitted, before the joint refinement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -35,7 +32,7 @@ pub struct EntryRecord {
 
 impl From<EntryFit> for EntryRecord {
     fn from(fit: EntryFit) -> Self {
-        let EntryFit { m, tv, iterations, evaluations, stop } = fit;
+        let EntryFit { m, tv, iterations, evaluations, stop, .. } = fit;
         Self { m: m.to_cols_array(), tv, iterations, evaluations, stop }
     }
 }
@@ -202,13 +199,11 @@ impl<'a> FitRun<'a> {
 
     fn fit_entries(&mut self, observer: Observer<'_>) -> Result<(), FitError> {
         let (plan, done) = (self.plan, self.state.entries.len());
-        let which = done..(done + PIECE).min(plan.owners().len());
-        let settings = plan.spec().entries;
+        let stage = plan.entry_stage()?;
         let sum: f64 = self.state.entries.iter().map(|entry| entry.tv).sum();
         let tv = (done > 0).then(|| sum / done as f64);
         let observer: Observer<'_> = &|progress| observer(Progress { tv, ..progress });
-        let fitted =
-            entries::fit_owners(plan.brdf(), plan.lattice(), plan.owners(), which, settings, observer)?;
+        let fitted = stage.fit(stage.piece(done), observer)?;
         self.state.entries.extend(fitted.into_iter().map(EntryRecord::from));
         Ok(())
     }

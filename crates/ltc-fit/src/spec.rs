@@ -6,8 +6,8 @@ use ltc_table::{Axis, Floors, Mapping, Quantity, check_name};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Brdf, FitError, GgxFamily, brdf, channels::ChannelSettings, entries::EntrySettings, joint::JointSettings,
-    measure::MeasureSettings,
+    Brdf, FitError, GgxFamily, Objective, brdf, channels::ChannelSettings, entries::EntrySettings,
+    joint::JointSettings, measure::MeasureSettings,
 };
 
 /// A fit, fully specified: the same specification gives the same digest, whatever the number of threads.
@@ -22,7 +22,8 @@ pub struct FitSpec {
     pub axes: Vec<Axis>,
     /// Smallest values that entries are fitted at.
     pub floors: Floors,
-    /// What is minimised: `total_variation`.
+    /// What is minimised: `total_variation`, `sliced_wasserstein`, `l3` or `kl`. Only the first is refined jointly; the others
+    /// need `joint.steps = 0`.
     pub objective: String,
     /// Each entry by itself.
     pub entries: EntrySettings,
@@ -75,7 +76,7 @@ impl FitSpec {
             axes,
             floors: Floors { alpha: 1e-3, lambda: 0.03, theta_max: 89.5_f64.to_radians() },
             objective: "total_variation".to_owned(),
-            entries: EntrySettings { samples: 512, iterations: 100 },
+            entries: EntrySettings::new(512, 100),
             joint,
             channels: ChannelSettings { samples: 2048, queries: 20_000, seed: 5 },
             measure: MeasureSettings { queries: 3000, samples: 4096, seed: 77 },
@@ -118,12 +119,7 @@ impl FitSpec {
         use Quantity::{Alpha, Lambda, Phi, Theta};
         let wrong = |field, reason: String| Err(FitError::Spec { field, reason });
         check_name(&self.name).or_else(|e| wrong("name", e.to_string()))?;
-        if self.objective != "total_variation" {
-            return wrong(
-                "objective",
-                format!("\"{}\" is not known; there is: total_variation", self.objective),
-            );
-        }
+        self.validate_method()?;
         const AXES: [&str; 4] = ["axes[0]", "axes[1]", "axes[2]", "axes[3]"];
         for (axis, field) in self.axes.iter().zip(AXES) {
             axis.validate().or_else(|e| wrong(field, e.to_string()))?;
@@ -145,6 +141,36 @@ impl FitSpec {
             return wrong("axes", format!("have {nodes} nodes in all, must have at most {MAX_NODES}"));
         }
         self.validate_numbers()
+    }
+
+    /// The objective of that name.
+    ///
+    /// # Errors
+    /// [`FitError::Spec`] for an unknown name.
+    pub fn objective(&self) -> Result<Objective, FitError> {
+        Objective::by_name(&self.objective)
+    }
+
+    fn validate_method(&self) -> Result<(), FitError> {
+        let wrong = |field, reason: String| Err(FitError::Spec { field, reason });
+        let objective = self.objective()?;
+        if objective != Objective::TotalVariation && self.joint.steps > 0 {
+            let reason = match objective {
+                Objective::SlicedWasserstein => "it would take a sort for each axis of each query",
+                Objective::L3 => "its mean over lobes of all widths would be that of the narrowest",
+                _ => "where it is infinite it is a floor that would be refined",
+            };
+            let name = objective.name();
+            return wrong(
+                "objective",
+                format!("{name} is not refined jointly ({reason}): set joint.steps to 0"),
+            );
+        }
+        if self.entries.optimiser.form().is_some() && self.axes.len() != 2 {
+            let name = self.entries.optimiser.name();
+            return wrong("entries.optimiser", format!("{name} fits isotropic tables (theta, alpha) only"));
+        }
+        Ok(())
     }
 
     fn validate_numbers(&self) -> Result<(), FitError> {
@@ -201,6 +227,7 @@ fn anisotropic_axes() -> Vec<Axis> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Optimiser;
 
     #[test]
     fn presets_are_valid() {
@@ -219,6 +246,13 @@ mod tests {
         };
         assert!(broken(|s| s.name = "../x".into()).starts_with("name:"));
         assert!(broken(|s| s.brdf = "phong".into()).starts_with("brdf:"));
+        assert!(
+            broken(|s| s.objective = "l2".into()).starts_with("objective: \"l2\" is not known; there are:")
+        );
+        assert!(broken(|s| s.objective = "l3".into()).starts_with("objective: l3 is not refined jointly"));
+        assert!(
+            broken(|s| s.entries.optimiser = Optimiser::NelderMeadFour).starts_with("entries.optimiser: ")
+        );
         assert!(broken(|s| s.floors.alpha = f64::NAN).starts_with("floors.alpha:"));
         assert!(broken(|s| s.joint.samples = 1).starts_with("joint.samples:"));
         assert!(broken(|s| s.measure.seed = s.joint.seed).starts_with("measure.seed:"));

@@ -110,7 +110,7 @@ fn comment(out: &mut String, path: &str) {
 const COMMENTS: &[(&str, &str)] = &[
     ("name", "Name of the table: a-z, 0-9 and -."),
     ("brdf", "Name of the BRDF."),
-    ("objective", "What is minimised."),
+    ("objective", "What is minimised: total_variation, sliced_wasserstein, l3 or kl."),
     (
         "axes",
         "The axes, slowest first: theta, alpha (isotropic) or theta, phi, alpha, lambda.\n\
@@ -124,6 +124,12 @@ const COMMENTS: &[(&str, &str)] = &[
     ("entries", "First, each entry by itself."),
     ("entries.samples", "Samples of each lobe."),
     ("entries.iterations", "Most iterations of each entry."),
+    (
+        "entries.optimiser",
+        "quasi_newton (left out, it is this), nelder_mead, or, for isotropic tables, nelder_mead_x_shear,\n\
+         nelder_mead_xy_shear, nelder_mead_z_shear, nelder_mead_four.",
+    ),
+    ("entries.continuation", "Whether each entry is fitted again from where its neighbours ended."),
     ("joint", "Then all entries together, over random queries between them."),
     ("joint.steps", "Steps; 0 leaves the entries as they were fitted alone."),
     ("joint.queries", "Random queries in each step."),
@@ -289,7 +295,16 @@ mod tests {
             ("floors.alpha = nan", "line 2: floors.alpha: is NaN, must be in"),
             ("joint.learning_rate = inf", "line 2: joint.learning_rate: is inf, must be in (0, 0.1]"),
             ("measure.seed = 3", "line 2: measure.seed: must differ from"),
-            ("objective = 'beauty'", "line 2: objective: \"beauty\" is not known; there is"),
+            ("objective = 'beauty'", "line 2: objective: \"beauty\" is not known; there are"),
+            ("objective = 'l3'", "line 2: objective: l3 is not refined jointly"),
+            (
+                "entries.optimiser = 'luck'",
+                "line 2: entries.optimiser: unknown variant `luck`, expected one of",
+            ),
+            (
+                "entries.optimiser = 'nelder_mead_four'",
+                "line 2: entries.optimiser: nelder_mead_four fits isotropic",
+            ),
             ("brdf = 'phong'", "line 2: brdf: \"phong\" is not known; there"),
             ("name = '../x'", "line 2: name: \"../x\" is not a table name"),
             ("name = 'a'\nname = 'b'", "line 3: duplicate key"),

@@ -89,6 +89,7 @@ fn check_manifest(version: &TableVersion, spec: &FitSpec, brdf: &dyn Brdf, fault
         ("fit.name is not name", spec.name == manifest.name),
         ("fit.floors is not floors", spec.floors == manifest.floors),
         ("brdf.name is not that of fit.brdf", manifest.brdf.name == brdf.name()),
+        ("brdf.parameters are not those of fit.brdf", manifest.brdf.parameters == brdf.parameters()),
     ] {
         if !same {
             faults.push(what.to_owned());

@@ -128,6 +128,11 @@ pub struct GridErrors {
     pub centre_fresnel_mean: f64,
     /// Its maximum.
     pub centre_fresnel_max: f64,
+    /// Mean of `|M₁ − M₂| / (|M₁| + |M₂|)` (Frobenius) over entries beside each other: how smoothly matrices lie, with the
+    /// scale and turn that lobes do not show.
+    pub step_mean: f64,
+    /// Its maximum.
+    pub step_max: f64,
 }
 
 /// Total variation over the standard draw (see `ltc_fit::draw`).

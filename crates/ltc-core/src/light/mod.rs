@@ -1,10 +1,18 @@
 //! Lights, as a shading point sees them: each file a shape, each shape a closed form.
 
 mod angle;
+mod any;
 mod batch;
 mod boundary;
+mod cone;
+mod cone_light;
+mod cone_region;
 mod convex;
+mod cylinder;
+mod disk;
 mod edge_form;
+mod ellipse;
+mod facing;
 mod horizon;
 mod lane;
 mod line;
@@ -19,14 +27,22 @@ mod sample;
 mod segment;
 mod simd;
 mod solid_angle;
+mod spaces;
+mod sphere;
 mod spherical_triangle;
 mod strip;
+mod surround;
 mod textured;
 mod triangulate;
+mod wide;
 
+pub use any::AnyLight;
 pub use batch::{LtcBatch, QuadBatch};
 pub(crate) use boundary::widen;
+pub use cylinder::Cylinder;
+pub use disk::Disk;
 pub use edge_form::{Cubic, EdgeForm, Exact, PublishedRational, Rational};
+pub use ellipse::Ellipse;
 pub use horizon::Horizon;
 pub use line::{Line, LineSample};
 pub use line_cylinder::LineCylinder;
@@ -37,6 +53,7 @@ pub use proxy::{clipped_sphere, clipped_sphere_fit};
 pub use quad::Quad;
 pub use sample::{LightSample, SampleLight};
 pub(crate) use solid_angle::{half_triangle, sum_of_units};
+pub use sphere::Sphere;
 pub use strip::Strip;
 pub use textured::{TextureFetch, TextureFrame, TexturedPolygon};
 
