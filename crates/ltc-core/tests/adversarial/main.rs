@@ -53,7 +53,7 @@ fn assert_is_a_fraction<R: Real>(input: &Input, seed: u64) -> bool {
 fn every_answer_is_a_fraction() {
     let answered = std::sync::atomic::AtomicU64::new(0);
     in_parallel(INPUTS, |seed| {
-        let input = with_generator(seed, |g| g.input());
+        let input = with_generator(seed, Generator::input);
         let ok = assert_is_a_fraction::<f64>(&input, seed) & assert_is_a_fraction::<f32>(&input, seed);
         answered.fetch_add(u64::from(ok), std::sync::atomic::Ordering::Relaxed);
     });
@@ -64,7 +64,7 @@ fn every_answer_is_a_fraction() {
 #[test]
 fn lights_without_measure_are_dark() {
     in_parallel(INPUTS / 10, |seed| {
-        let input = with_generator(seed, |g| g.nothing());
+        let input = with_generator(seed, Generator::nothing);
         assert_is_a_fraction::<f64>(&input, seed);
         assert_is_a_fraction::<f32>(&input, seed);
     });
