@@ -67,7 +67,7 @@ impl<R: Real> Cylinder<R> {
     }
 }
 
-/// In f64 for both precisions; see [`View::of`].
+/// In f64 for both precisions; see `View::of`.
 impl<R: Real> Light<R> for Cylinder<R> {
     fn integrate_within(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
         let lobe = Lobe { spaces: Spaces::wide(ltc), horizon };

@@ -6,7 +6,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
 #![expect(
     clippy::redundant_closure_for_method_calls,
-    reason = "a method's path holds for one lifetime alone"
+    reason = "a method's path is not general in its lifetimes"
 )]
 
 mod generator;
