@@ -103,7 +103,10 @@ impl<R: Real> Cone<R> {
         let e1 = longer.try_unit()?;
         let widths = [width / root, self.area * (self.h / root) / (width * root)];
         let finite = widths.iter().all(|w| w.is_finite());
-        finite.then_some(ConeAxes { widths: [widths[0], widths[1].min(widths[0])], axes: [e1, e3.cross(e1), e3] })
+        finite.then_some(ConeAxes {
+            widths: [widths[0], widths[1].min(widths[0])],
+            axes: [e1, e3.cross(e1), e3],
+        })
     }
 }
 

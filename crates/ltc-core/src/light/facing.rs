@@ -26,29 +26,35 @@ pub(super) enum Seen {
 
 /// From which side the origin sees a light through `point` that faces along `u × v`, if at all.
 ///
-/// Never from its own plane: where the rounding of the input to its precision decides the side, the light is edge-on. That is
-/// judged component by component: a light that lies along the axes may be as close to the shading point as it likes.
+/// Never from its own plane: where rounding decides the side the light is edge-on. Rounding to f32 is judged component by
+/// component: for a light that lies along the axes it decides nothing, however close the light is.
 #[inline]
 pub(super) fn side_of_span<R: Real>(point: R::Vec3, u: R::Vec3, v: R::Vec3, sides: Sides) -> Option<Seen> {
     let [p, u, v] = scaled::<R>([point, u, v])?;
     let (a, b) = (u.abs(), v.abs());
-    let magnitude =
-        DVec3::new(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x).dot(p.abs());
-    side::<R>(u.cross(v).dot(p), magnitude, sides)
+    let terms = DVec3::new(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x);
+    side::<R>(p, u.cross(v), terms, sides)
 }
 
 /// The same for a light that faces along `normal`.
 #[inline]
 pub(super) fn side_of_normal<R: Real>(point: R::Vec3, normal: R::Vec3, sides: Sides) -> Option<Seen> {
     let [p, n, _] = scaled::<R>([point, normal, normal])?;
-    side::<R>(n.dot(p), n.abs().dot(p.abs()), sides)
+    side::<R>(p, n, n.abs(), sides)
 }
 
-/// From a product that is positive behind the light, and the sum of the magnitudes of its terms.
+/// How many ε of its own precision the input's rounding moves a product of its components: 1.5 at worst, hardly ever above
+/// this.
+const INPUT_ROUNDING: f64 = 0.75;
+/// How many ε of f64, times the product of the lengths, whatever computed the input has left of a right angle.
+const COMPUTED_ROUNDING: f64 = 8.0;
+
+/// From a point of the light, its normal, and the sum of magnitudes behind each component of that.
 #[inline]
-fn side<R: Real>(behind: f64, magnitude: f64, sides: Sides) -> Option<Seen> {
-    // Three factors rounded to half an ε at random; and what evaluating the product in f64 adds.
-    let rounding = magnitude * (R::EPSILON.to_f64() * ROUNDING + 3.0 * f64::EPSILON);
+fn side<R: Real>(point: DVec3, normal: DVec3, terms: DVec3, sides: Sides) -> Option<Seen> {
+    let behind = normal.dot(point);
+    let rounding = INPUT_ROUNDING * R::EPSILON.to_f64() * terms.dot(point.abs())
+        + COMPUTED_ROUNDING * f64::EPSILON * (terms.length_squared() * point.length_squared()).sqrt();
     if behind < -rounding {
         Some(Seen::Front)
     } else if behind > rounding && sides == Sides::Two {
@@ -57,6 +63,3 @@ fn side<R: Real>(behind: f64, magnitude: f64, sides: Sides) -> Option<Seen> {
         None
     }
 }
-
-/// How many ε of the input's precision rounding can move the product: 1.5 at worst, rarely above this.
-const ROUNDING: f64 = 0.75;
