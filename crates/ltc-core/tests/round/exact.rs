@@ -60,7 +60,7 @@ fn keeps_its_digits_over_the_decades() {
 
 /// A light at one of the sweep's settings, at any scale and mostly in any orientation.
 pub fn swept(random: &mut Random, kind: usize, setting: usize) -> Shape {
-    let frame = if setting % 4 == 0 { glam::DMat3::IDENTITY } else { random.rotation() };
+    let frame = if setting.is_multiple_of(4) { glam::DMat3::IDENTITY } else { random.rotation() };
     let scale = random.decades(1e-6, 1e6);
     let turn = random.range(0.0, core::f64::consts::TAU);
     let (height, offset, aspect) = match setting % 3 {
@@ -85,7 +85,7 @@ pub fn swept(random: &mut Random, kind: usize, setting: usize) -> Shape {
             let aside = 1.0 + height;
             let end = |z: f64| place(aside * turn.cos(), aside * turn.sin(), z);
             let ends = [end(-at * length), end((1.0 - at) * length)];
-            Shape::Cylinder { ends, radius: scale, caps: setting % 2 == 0 }
+            Shape::Cylinder { ends, radius: scale, caps: setting.is_multiple_of(2) }
         }
     }
 }
