@@ -20,6 +20,16 @@ pub trait Chart {
 /// The sphere, a cap or a band around an axis, in equal-area coordinates: u goes with `sin²(θ/2)`, v with φ.
 ///
 /// Accurate to f64's resolution of directions for caps as narrow as 1e-8 rad.
+///
+/// ```
+/// use glam::dvec3;
+/// use ltc_reference::{CapChart, Chart};
+///
+/// let cap = CapChart::cap(dvec3(1.0, 2.0, 2.0), 0.1)?;
+/// let (w, solid_angle) = cap.direction([0.5, 0.25]);
+/// assert!((cap.place(w).unwrap()[0] - 0.5).abs() < 1e-12 && solid_angle < 0.0315);
+/// # Ok::<(), ltc_reference::ReferenceError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CapChart {
     /// Columns: two directions across the axis, the axis.

@@ -2,19 +2,14 @@
 
 use glam::DVec3;
 
+use crate::bins::{Bin, counted, pool};
 use crate::chart::Chart;
 use crate::error::ReferenceError;
 use crate::points::SplitMix64;
-use crate::quadrature::GaussLegendre;
 use crate::special::incomplete_gamma;
 
 /// How far from 1 the length of a sampled direction may be: samplers in f32 are tested, too.
 const UNIT_TOLERANCE: f64 = 1e-5;
-/// A box is halved while its two quadratures differ by more than this many expected samples.
-const BOX_TOLERANCE: f64 = 0.01;
-/// How often a bin is quartered at most.
-const MAX_DEPTH: u32 = 12;
-
 /// How a χ² test is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChiSquareOptions {
@@ -69,8 +64,9 @@ pub struct ChiSquare {
 ///
 /// `sample` gets independent uniform points of [0, 1)² and returns a unit direction, or `None` for a sample that counts
 /// as nothing. The directions are counted in bins that are equal in the coordinates of `chart`; the expected counts are
-/// integrals of `pdf` by adaptive Gauss quadrature, for which the sampler is not asked. Mass that `pdf` lacks over the
-/// chart (1 less its integral) is what is expected outside of the chart or refused.
+/// integrals of `pdf` by adaptive Gauss quadrature. A few samples tell it where to look closely, so that it finds narrow
+/// peaks; they do not enter its values. Mass that `pdf` lacks over the chart (1 less its integral) is what is expected outside
+/// of the chart or refused.
 ///
 /// Choose the chart to fit the support: bins that are much larger than a light or a lobe see nothing, and a peak that the
 /// quadrature overlooks makes the test fail, never pass. A narrow light takes [`crate::CapChart::cap`], a thin lobe
@@ -100,7 +96,7 @@ pub fn chi_square(
         let (w, solid_angle) = chart.direction(uv);
         pdf(w) * solid_angle
     };
-    let draw = |u: [f64; 2]| match sample(u) {
+    let mut draw = |u: [f64; 2]| match sample(u) {
         None => Ok(Drawn::Nothing),
         Some(w) if !w.is_finite() => Err(ReferenceError::NonFiniteInput { what: "sampled direction" }),
         Some(w) if (w.length() - 1.0).abs() > UNIT_TOLERANCE => {
@@ -109,7 +105,7 @@ pub fn chi_square(
         Some(w) if pdf(w) > 0.0 => Ok(chart.place(w).map_or(Drawn::Nothing, Drawn::At)),
         Some(_) => Ok(Drawn::Stray),
     };
-    test(draw, density, options)
+    test(&mut draw, &density, options)
 }
 
 /// [`chi_square`] for points of the unit square, `density` per unit area: for samplers of textures and surfaces.
@@ -121,7 +117,7 @@ pub fn chi_square_unit(
     density: impl Fn([f64; 2]) -> f64,
     options: ChiSquareOptions,
 ) -> Result<ChiSquare, ReferenceError> {
-    let draw = |u: [f64; 2]| match sample(u) {
+    let mut draw = |u: [f64; 2]| match sample(u) {
         None => Ok(Drawn::Nothing),
         Some(uv) if !uv.iter().all(|x| x.is_finite()) => {
             Err(ReferenceError::NonFiniteInput { what: "sampled point" })
@@ -130,7 +126,7 @@ pub fn chi_square_unit(
         Some(uv) if density(uv) > 0.0 => Ok(Drawn::At(uv)),
         Some(_) => Ok(Drawn::Stray),
     };
-    test(draw, &density, options)
+    test(&mut draw, &density, options)
 }
 
 /// What became of one sample.
@@ -143,27 +139,24 @@ enum Drawn {
     Stray,
 }
 
+/// Not generic, so that it is compiled once, with this crate's optimisation.
 fn test(
-    mut draw: impl FnMut([f64; 2]) -> Result<Drawn, ReferenceError>,
-    density: impl Fn([f64; 2]) -> f64,
+    draw: &mut dyn FnMut([f64; 2]) -> Result<Drawn, ReferenceError>,
+    density: &dyn Fn([f64; 2]) -> f64,
     options: ChiSquareOptions,
 ) -> Result<ChiSquare, ReferenceError> {
-    let [columns, rows] = options.bins.map(|n| n.max(1));
     let samples = f64::from(options.samples);
-    let mut bins = expected_counts(&density, [columns, rows], samples)?;
-    let mass = bins.iter().map(|bin| bin.expected).sum::<f64>() / samples.max(1.0);
-    let (mut outside, mut stray) = (0, 0);
+    let (mut outside, mut stray, mut points) = (0, 0, Vec::new());
     let mut random = SplitMix64::new(options.seed);
     for _ in 0..options.samples {
         match draw(random.next_2d())? {
-            Drawn::At([u, v]) => {
-                let index = |x: f64, n: usize| ((x * n as f64) as usize).min(n - 1);
-                bins[index(u, columns) * rows + index(v, rows)].observed += 1.0;
-            }
+            Drawn::At(uv) => points.push(uv),
             Drawn::Nothing => outside += 1,
             Drawn::Stray => stray += 1,
         }
     }
+    let bins = counted(density, options.bins, samples, &points)?;
+    let mass = bins.iter().map(|bin| bin.expected).sum::<f64>() / samples.max(1.0);
     let outside_bin = Bin { expected: samples * (1.0 - mass), observed: f64::from(outside) };
     // What is outside is never pooled with what is inside: a peak that the quadrature overlooked would hide there.
     let (mut pooled, rest) = pool(bins, options.min_expected);
@@ -185,109 +178,6 @@ fn test(
         (false, false) => p_counts,
     };
     Ok(ChiSquare { statistic, dof, p_value, mass, outside, stray })
-}
-
-/// One bin, or several that were pooled.
-#[derive(Clone, Copy, Default)]
-struct Bin {
-    expected: f64,
-    observed: f64,
-}
-
-impl Bin {
-    /// The probability of as many samples or more where fewer are expected than χ² can judge: the tail of Poisson's
-    /// distribution, `P(X ≥ k) = P(k, λ)`, with λ at least the quadrature's error.
-    fn poisson_tail(&self, least: f64) -> f64 {
-        if self.observed > 0.0 { incomplete_gamma(self.observed, self.expected.max(least)).0 } else { 1.0 }
-    }
-}
-
-/// Bins pooled by ascending expectation until each has `min_expected`, and what is left if that is not reached by all
-/// together. What is observed plays no part in the choice.
-fn pool(mut bins: Vec<Bin>, min_expected: f64) -> (Vec<Bin>, Bin) {
-    bins.sort_by(|a, b| a.expected.total_cmp(&b.expected));
-    let mut pooled: Vec<Bin> = Vec::new();
-    let mut current = Bin::default();
-    for bin in bins {
-        current.expected += bin.expected;
-        current.observed += bin.observed;
-        if current.expected >= min_expected && current.expected > 0.0 {
-            pooled.push(current);
-            current = Bin::default();
-        }
-    }
-    if let Some(last) = pooled.last_mut() {
-        last.expected += current.expected;
-        last.observed += current.observed;
-        current = Bin::default();
-    }
-    (pooled, current)
-}
-
-/// `samples` times the integral of the density over each bin, the bins in order of u, then v.
-fn expected_counts(
-    density: &impl Fn([f64; 2]) -> f64,
-    [columns, rows]: [usize; 2],
-    samples: f64,
-) -> Result<Vec<Bin>, ReferenceError> {
-    let cubature = Cubature { density, rule: GaussLegendre::new(5), samples };
-    let side = [1.0 / columns as f64, 1.0 / rows as f64];
-    let mut bins = Vec::with_capacity(columns * rows);
-    for i in 0..columns {
-        for j in 0..rows {
-            let corner = [i as f64 * side[0], j as f64 * side[1]];
-            let coarse = cubature.measure(corner, side)?;
-            bins.push(Bin { expected: cubature.refine(corner, side, coarse, 0)?, observed: 0.0 });
-        }
-    }
-    Ok(bins)
-}
-
-/// Adaptive quadrature of a density that may jump, to a fraction of a sample.
-struct Cubature<'a, F> {
-    density: &'a F,
-    rule: GaussLegendre,
-    samples: f64,
-}
-
-impl<F: Fn([f64; 2]) -> f64> Cubature<'_, F> {
-    /// The expected count of a box by the 5 × 5 rule.
-    fn measure(&self, corner: [f64; 2], side: [f64; 2]) -> Result<f64, ReferenceError> {
-        let mut least = 0.0f64;
-        let value = self.rule.integrate(corner[0], corner[0] + side[0], |u| {
-            self.rule.integrate(corner[1], corner[1] + side[1], |v| {
-                let density = (self.density)([u, v]);
-                least = least.min(density);
-                density
-            })
-        });
-        if value.is_finite() && least >= 0.0 {
-            Ok(self.samples * value)
-        } else {
-            Err(ReferenceError::NonFiniteIntegrand { u: corner[0], v: corner[1] })
-        }
-    }
-
-    /// The expected count of a box of which `coarse` is a first measure.
-    fn refine(
-        &self,
-        corner: [f64; 2],
-        side: [f64; 2],
-        coarse: f64,
-        depth: u32,
-    ) -> Result<f64, ReferenceError> {
-        let half = side.map(|s| 0.5 * s);
-        let mut quarters = [([0.0; 2], 0.0); 4];
-        for (i, (at, value)) in quarters.iter_mut().enumerate() {
-            *at = [corner[0] + (i & 1) as f64 * half[0], corner[1] + (i >> 1) as f64 * half[1]];
-            *value = self.measure(*at, half)?;
-        }
-        let fine = quarters.iter().map(|(_, value)| value).sum::<f64>();
-        if (fine - coarse).abs() <= BOX_TOLERANCE || depth >= MAX_DEPTH {
-            return Ok(fine);
-        }
-        quarters.iter().map(|&(at, value)| self.refine(at, half, value, depth + 1)).sum()
-    }
 }
 
 /// Several χ² tests that shall hold together: each is held to a level so small that all right samplers pass with

@@ -18,6 +18,7 @@ mod manifest;
 pub mod npz;
 mod precision;
 mod query;
+mod shelf;
 mod table;
 #[cfg(test)]
 mod testing;
@@ -29,8 +30,9 @@ pub use channels::Channels;
 pub use crop::Part;
 pub use error::TableError;
 pub use lookup::{Lobe, Lookup};
-pub use manifest::{BrdfInfo, ChannelInfo, DrawErrors, Errors, Floors, Manifest};
+pub use manifest::{BrdfInfo, ChannelInfo, DrawErrors, Errors, Floors, GridErrors, Manifest};
 pub use precision::Precision;
 pub use query::{Folded, Query};
+pub use shelf::{Added, add_version};
 pub use table::{CellStats, Kind, Table};
 pub use version::{MANIFEST_FILE, PAYLOAD_FILE, TableVersion, check_name};

@@ -1,9 +1,12 @@
 //! Disk lights: the fraction of a lobe that sees the disk, in closed form.
 
+use glam::DVec3;
+
 use super::cone_light::ConeLight;
 use super::ellipse::Ellipse;
-use super::facing::side_of_normal;
+use super::facing::{Facing, Seen, side_of_normal};
 use super::spaces::Spaces;
+use super::wide::widened;
 use super::{Horizon, Light, LightSample, SampleLight, Sides};
 use crate::frame::tangent_to;
 use crate::{InputError, Ltc, Real, Vector, check_range};
@@ -52,6 +55,15 @@ impl<R: Real> Disk<R> {
         Ok(Self { centre, normal, across: [tangent, unit.cross(tangent)], radius, sides })
     }
 
+    /// In f64, axes included.
+    #[cold]
+    fn grazing(&self, side: Seen) -> ConeLight<f64> {
+        let normal = widened::<R>(self.normal).try_unit().unwrap_or(DVec3::Z);
+        let tangent = tangent_to::<f64>(normal);
+        let [u, v] = [tangent, normal.cross(tangent)].map(|axis| axis * self.radius.to_f64());
+        ConeLight::seen(side, widened::<R>(self.centre), u, v)
+    }
+
     /// The same light as an ellipse.
     pub fn to_ellipse(&self) -> Ellipse<R> {
         Ellipse::of_valid(self.centre, self.across.map(|axis| axis * self.radius), self.sides)
@@ -60,7 +72,13 @@ impl<R: Real> Disk<R> {
 
 impl<R: Real> Light<R> for Disk<R> {
     fn integrate_within(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
-        let Some(side) = side_of_normal::<R>(self.centre, self.normal, self.sides) else { return R::ZERO };
+        let Some(Facing { side, is_grazing }) = side_of_normal::<R>(self.centre, self.normal, self.sides)
+        else {
+            return R::ZERO;
+        };
+        if is_grazing {
+            return R::of(self.grazing(side).fraction(&Spaces::wide(ltc), horizon));
+        }
         let [u, v] = self.across.map(|axis| axis * self.radius);
         ConeLight::seen(side, self.centre, u, v).fraction(&Spaces::of(ltc), horizon)
     }

@@ -1,8 +1,9 @@
 //! Elliptical lights: the fraction of a lobe that sees the ellipse, in closed form.
 
 use super::cone_light::ConeLight;
-use super::facing::{Seen, side_of_span};
+use super::facing::{Facing, side_of_span};
 use super::spaces::Spaces;
+use super::wide::widened;
 use super::{Horizon, Light, LightSample, SampleLight, Sides};
 use crate::{InputError, Ltc, Real, Vector};
 
@@ -60,14 +61,19 @@ impl<R: Real> Ellipse<R> {
     }
 
     /// The side that is seen, if any.
-    fn side(&self) -> Option<Seen> {
+    fn side(&self) -> Option<Facing> {
         side_of_span::<R>(self.centre, self.axes[0], self.axes[1], self.sides)
     }
 }
 
 impl<R: Real> Light<R> for Ellipse<R> {
     fn integrate_within(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
-        let Some(side) = self.side() else { return R::ZERO };
+        let Some(Facing { side, is_grazing }) = self.side() else { return R::ZERO };
+        if is_grazing {
+            let [centre, u, v] = [self.centre, self.axes[0], self.axes[1]].map(widened::<R>);
+            let light = ConeLight::<f64>::seen(side, centre, u, v);
+            return R::of(light.fraction(&Spaces::wide(ltc), horizon));
+        }
         ConeLight::seen(side, self.centre, self.axes[0], self.axes[1]).fraction(&Spaces::of(ltc), horizon)
     }
 }

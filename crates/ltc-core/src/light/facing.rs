@@ -24,12 +24,20 @@ pub(super) enum Seen {
     Back,
 }
 
+/// How a flat light is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Facing {
+    pub side: Seen,
+    /// So nearly edge-on that the input's precision would not do for what follows.
+    pub is_grazing: bool,
+}
+
 /// From which side the origin sees a light through `point` that faces along `u × v`, if at all.
 ///
-/// Never from its own plane: where rounding decides the side the light is edge-on. Rounding to f32 is judged component by
-/// component: for a light that lies along the axes it decides nothing, however close the light is.
+/// Never from its own plane: where the rounding of f64 decides the side, of this or of whatever computed the light, it is
+/// edge-on.
 #[inline]
-pub(super) fn side_of_span<R: Real>(point: R::Vec3, u: R::Vec3, v: R::Vec3, sides: Sides) -> Option<Seen> {
+pub(super) fn side_of_span<R: Real>(point: R::Vec3, u: R::Vec3, v: R::Vec3, sides: Sides) -> Option<Facing> {
     let [p, u, v] = scaled::<R>([point, u, v])?;
     let (a, b) = (u.abs(), v.abs());
     let terms = DVec3::new(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x);
@@ -38,28 +46,28 @@ pub(super) fn side_of_span<R: Real>(point: R::Vec3, u: R::Vec3, v: R::Vec3, side
 
 /// The same for a light that faces along `normal`.
 #[inline]
-pub(super) fn side_of_normal<R: Real>(point: R::Vec3, normal: R::Vec3, sides: Sides) -> Option<Seen> {
+pub(super) fn side_of_normal<R: Real>(point: R::Vec3, normal: R::Vec3, sides: Sides) -> Option<Facing> {
     let [p, n, _] = scaled::<R>([point, normal, normal])?;
     side::<R>(p, n, n.abs(), sides)
 }
 
-/// How many ε of its own precision the input's rounding moves a product of its components: 1.5 at worst, hardly ever above
-/// this.
-const INPUT_ROUNDING: f64 = 0.75;
-/// How many ε of f64, times the product of the lengths, whatever computed the input has left of a right angle.
-const COMPUTED_ROUNDING: f64 = 8.0;
-
 /// From a point of the light, its normal, and the sum of magnitudes behind each component of that.
 #[inline]
-fn side<R: Real>(point: DVec3, normal: DVec3, terms: DVec3, sides: Sides) -> Option<Seen> {
+fn side<R: Real>(point: DVec3, normal: DVec3, terms: DVec3, sides: Sides) -> Option<Facing> {
     let behind = normal.dot(point);
-    let rounding = INPUT_ROUNDING * R::EPSILON.to_f64() * terms.dot(point.abs())
-        + COMPUTED_ROUNDING * f64::EPSILON * (terms.length_squared() * point.length_squared()).sqrt();
-    if behind < -rounding {
-        Some(Seen::Front)
+    let magnitude = (terms.length_squared() * point.length_squared()).sqrt();
+    let rounding = magnitude * (8.0 * f64::EPSILON);
+    let side = if behind < -rounding {
+        Seen::Front
     } else if behind > rounding && sides == Sides::Two {
-        Some(Seen::Back)
+        Seen::Back
     } else {
-        None
-    }
+        return None;
+    };
+    let is_narrow = R::EPSILON.to_f64() > f64::EPSILON;
+    let is_grazing = is_narrow && behind.abs() < GRAZING * R::EPSILON.to_f64() * magnitude;
+    Some(Facing { side, is_grazing })
 }
+
+/// Axes rounded to the input's precision turn the light by an ε; that is to be a small part of how far it is from edge-on.
+const GRAZING: f64 = 4096.0;
