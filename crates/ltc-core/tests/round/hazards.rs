@@ -67,7 +67,8 @@ fn edge_on_disk() {
             assert_eq!(light.exact(tilted(), Horizon::BOTH), 0.0, "{light:?}");
             // Rounded to f32 it is another light, a hair off the plane: seen as f64 sees that one.
             let rounded = light.rounded();
-            let (exact, single) = (rounded.exact(tilted_f32(), Horizon::BOTH), light.single(tilted(), Horizon::BOTH));
+            let (exact, single) =
+                (rounded.exact(tilted_f32(), Horizon::BOTH), light.single(tilted(), Horizon::BOTH));
             assert!((exact - single).abs() < 2e-5, "{exact} {single}: {light:?}");
         }
     }

@@ -144,7 +144,7 @@ impl Shape {
 
     /// The oracle's value, clamped as the library's are; `None` where it does not converge.
     pub fn reference(&self, lobe: &impl Lobe, tolerance: f64) -> Option<f64> {
-        let tolerance = Tolerance { max_evaluations: 4_000_000, ..Tolerance::absolute(tolerance) };
+        let tolerance = Tolerance { max_evaluations: 2_000_000, ..Tolerance::absolute(tolerance) };
         let flat = PolygonOptions { two_sided: true, tolerance };
         let estimate = match *self {
             Self::Disk { centre, normal, radius } => {
