@@ -29,6 +29,7 @@ MAPPINGS = {
     "linear": lambda x: x,
     "sqrt": math.sqrt,
     "sqrt_one_minus_cos": lambda x: math.sqrt(1.0 - math.cos(x)),
+    "half_tangent": lambda x: math.tan(0.5 * x),
 }
 
 

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use ltc_benches::stability::{Form, Page, chart, nanoseconds};
 
 /// Random cases of each shape at each value.
-const COUNT: usize = 500;
+const COUNT: usize = 1500;
 
 const COMMAND: &str = "cargo run --release -p ltc-benches --bin stability -- docs";
 

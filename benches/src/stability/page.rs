@@ -34,9 +34,10 @@ impl Page {
         let mut page = format!(
             "# Rounding errors of every light, and what each costs\n\n\
              Made by `{command}`: {} random cases of each shape at each value. Inputs are exact in `f32`; errors are absolute, of a \
-             fraction in [0, 1], against the same formulas in numbers of 31 digits. A share above 1 would break the bound that \
-             the shape's documentation states for `f32` (2e-5 for polygons, 1e-4 for the rest, times cond(M)/100 where that \
-             exceeds 1). That the formulas themselves are right is tested against quadrature in `crates/ltc-core/tests`.\n\n\
+             fraction in [0, 1], against quadrature along the light's boundary (for lines and strips, along the line) in numbers of 31 \
+             digits, which shares no code with `ltc-core` and is itself tested against quadrature over surfaces. The bounds: `f64` \
+             1e-9 for polygons, lines and strips, 1e-8 for disks, ellipses and spheres, 1e-6 for wide cylinders; `f32` 2e-5 for \
+             polygons, 1e-4 for the rest, times cond(M)/100 where that exceeds 1. A share of 1 would reach the bound of `f32`.\n\n\
              ![Largest errors over each sweep](images/stability.svg)\n\n## Cost\n\n\
              One integration over a lobe with both horizons cut, shapes and lobes ready made, on {machine}.\n\n\
              | shape | f32, ns | f64, ns | f32 max error over all sweeps | its share of the bound | f64 max error |\n|---|---|---|---|---|---|\n",
@@ -57,7 +58,7 @@ impl Page {
         for (sweep, values, outcomes) in &self.sweeps {
             table(&mut page, *sweep, values, outcomes);
         }
-        page
+        page + include_str!("hazards.md")
     }
 
     /// The largest of everything that shape `i` has shown.
@@ -97,6 +98,11 @@ impl Page {
     }
 }
 
+/// Powers of ten as such, moderate numbers in full.
+fn label(value: f64) -> String {
+    if (0.01..=100.0).contains(&value) { value.to_string() } else { format!("{value:e}") }
+}
+
 fn table(page: &mut String, sweep: Sweep, values: &[f64], outcomes: &[Vec<Outcome>]) {
     let _ = writeln!(page, "\n## Over {}\n\nf32 max (RMS), f64 max.\n", sweep.name());
     let names: Vec<_> = Form::ALL.iter().map(|form| form.name()).collect();
@@ -104,7 +110,7 @@ fn table(page: &mut String, sweep: Sweep, values: &[f64], outcomes: &[Vec<Outcom
     for (value, row) in values.iter().zip(outcomes) {
         let cells: Vec<String> =
             row.iter().map(|o| format!("{:.0e} ({:.0e}), {:.0e}", o.f32_max, o.f32_rms, o.f64_max)).collect();
-        let _ = writeln!(page, "| {value} | {} |", cells.join(" | "));
+        let _ = writeln!(page, "| {} | {} |", label(*value), cells.join(" | "));
     }
 }
 
@@ -125,7 +131,7 @@ pub fn chart(page: &Page) -> String {
         panel(&mut svg, [left, top], *sweep, values, outcomes);
     }
     for (i, form) in Form::ALL.iter().enumerate() {
-        let x = 60.0 + 130.0 * i as f64;
+        let x = 60.0 + 112.0 * i as f64;
         let _ = writeln!(
             svg,
             "<path d=\"M{x} 18h22\" stroke=\"{}\" stroke-width=\"2\"/><text x=\"{}\" y=\"22\">{}</text>",
@@ -157,21 +163,24 @@ fn panel(svg: &mut String, [left, top]: [f64; 2], sweep: Sweep, values: &[f64], 
         let at = y(10f64.powi(-decade));
         let _ = writeln!(
             svg,
-            "<path d=\"M{left} {at}h{width}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{}\" text-anchor=\"end\">1e-{decade}</text>",
+            "<path d=\"M{left} {at}h{width}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
             left - 5.0,
-            at + 4.0
+            at + 4.0,
+            label(10f64.powi(-decade))
         );
     }
     for value in values {
         let _ = writeln!(
             svg,
-            "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{value:e}</text>",
+            "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
             x(*value),
-            top + height + 15.0
+            top + height + 15.0,
+            label(*value)
         );
     }
     for (i, colour) in COLOURS.iter().enumerate() {
-        for (dash, error) in [("", (|o: &Outcome| o.f32_max) as fn(&Outcome) -> f64), ("5 4", |o| o.f64_max)]
+        for (dash, error) in
+            [("none", (|o: &Outcome| o.f32_max) as fn(&Outcome) -> f64), ("5 4", |o| o.f64_max)]
         {
             let points: Vec<String> = values
                 .iter()

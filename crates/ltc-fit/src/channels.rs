@@ -4,13 +4,13 @@ use ltc_core::points::SplitMix64;
 use ltc_table::{Axis, lookup::Corner};
 use rayon::prelude::*;
 
-use crate::{Brdf, DiskPoints, FitError, Lattice, Lobe, Observer, Progress, draw, joint::query_corners};
+use crate::{Brdf, DiskRule, FitError, Lattice, Lobe, Observer, Progress, draw, joint::query_corners};
 
 /// Settings of [`fit_channels`].
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChannelSettings {
-    /// Visible-normal samples of each integral.
+    /// Nodes of each integral's quadrature, see [`DiskRule`].
     pub samples: usize,
     /// Random queries between the entries; 0 keeps the entries' own values.
     pub queries: usize,
@@ -22,7 +22,7 @@ pub struct ChannelSettings {
 pub type Channels = (Vec<f64>, Vec<f64>);
 
 /// Integrates both over every entry's lobe, then moves the entries to the least squares of the interpolation error over
-/// random queries, held to their own values where few queries come.
+/// random queries up to grazing, held to their own values where few queries come.
 ///
 /// # Errors
 /// [`FitError::Stopped`] when the observer says so.
@@ -33,25 +33,22 @@ pub fn fit_channels(
     settings: ChannelSettings,
     observer: Observer<'_>,
 ) -> Result<Channels, FitError> {
-    let points = DiskPoints::new(settings.samples, [0.5, 0.5]);
+    let rule = DiskRule::of_about(settings.samples);
     let own: Result<Vec<(f64, f64)>, FitError> = lattice
         .nodes
         .par_iter()
-        .map_init(Lobe::default, |lobe, node| {
-            brdf.sample_lobe(node.wo(), node.widths()?, &points, lobe);
-            Ok((lobe.magnitude, lobe.fresnel))
-        })
+        .map_init(Lobe::default, |lobe, node| Ok(brdf.albedo(node.wo(), node.widths()?, &rule, lobe)))
         .collect();
     let (magnitude, fresnel): (Vec<f64>, Vec<f64>) = own?.into_iter().unzip();
     report(observer, 1)?;
     if settings.queries == 0 {
         return Ok((magnitude, fresnel));
     }
-    let rows = sample_rows(brdf, axes, settings, &points)?;
+    let rows = sample_rows(brdf, axes, lattice, settings, &rule)?;
     report(observer, 2)?;
     let solve = |start: &[f64], value: fn(&Row) -> f64| tied(lattice, &least_squares(start, &rows, value));
-    let mut magnitude = solve(&magnitude, |r| r.magnitude);
-    let mut fresnel = solve(&fresnel, |r| r.fresnel);
+    let (mut magnitude, mut fresnel) =
+        rayon::join(|| solve(&magnitude, |r| r.magnitude), || solve(&fresnel, |r| r.fresnel));
     // No surface reflects more than it gets (or its model lets it), and a Fresnel weight is at most 1: least squares alone
     // may say otherwise.
     for (n, f) in magnitude.iter_mut().zip(&mut fresnel) {
@@ -74,52 +71,69 @@ struct Row {
     fresnel: f64,
 }
 
+impl Row {
+    fn interpolate(&self, x: &[f64]) -> f64 {
+        self.corners.iter().map(|c| c.weight * x[c.index]).sum()
+    }
+}
+
+/// Equations for the entries that own themselves: those that share a lobe share a value.
 fn sample_rows(
     brdf: &dyn Brdf,
     axes: &[Axis],
+    lattice: &Lattice,
     settings: ChannelSettings,
-    points: &DiskPoints,
+    rule: &DiskRule,
 ) -> Result<Vec<Row>, FitError> {
     let isotropic = axes.len() == 2;
-    let queries = draw::training(&mut SplitMix64::new(settings.seed), settings.queries, isotropic);
+    let queries = draw::grazing(&mut SplitMix64::new(settings.seed), settings.queries, isotropic);
     queries
         .par_iter()
         .map_init(Lobe::default, |lobe, query| {
-            brdf.sample_lobe(crate::direction(query.theta, query.phi), query.validate()?, points, lobe);
-            let corners = query_corners(axes, &query.fold()?);
-            Ok(Row { corners, magnitude: lobe.magnitude, fresnel: lobe.fresnel })
+            let wo = crate::direction(query.theta, query.phi);
+            let (magnitude, fresnel) = brdf.albedo(wo, query.validate()?, rule, lobe);
+            let mut corners = query_corners(axes, &query.fold()?);
+            for corner in &mut corners {
+                corner.index = lattice.ties[corner.index].owner;
+            }
+            Ok(Row { corners, magnitude, fresnel })
         })
         .collect()
 }
 
 /// Weight of an entry's own value against one query at it.
 const PULL: f64 = 0.05;
-
-/// Minimises `Σ (interpolation − value)² + PULL Σ (entry − start)²` by conjugate gradients on the normal equations.
+/// Minimises `Σ (interpolation − value)² + PULL Σ (entry − start)²` by conjugate gradients on the normal equations, each
+/// unknown in the units of its own curvature.
+///
+/// Higher powers of the error were tried and left: on 8⁴ nodes the fourth and the sixth lower the largest error by less than a
+/// tenth, and raise the mean by as much as a quarter.
 fn least_squares(start: &[f64], rows: &[Row], value: fn(&Row) -> f64) -> Vec<f64> {
-    let interpolate = |x: &[f64], row: &Row| row.corners.iter().map(|c| c.weight * x[c.index]).sum::<f64>();
+    let mut curvature = vec![PULL; start.len()];
+    let mut residual = vec![0.0; start.len()];
+    for row in rows {
+        let excess = value(row) - row.interpolate(start);
+        for corner in &row.corners {
+            residual[corner.index] += corner.weight * excess;
+            curvature[corner.index] += corner.weight * corner.weight;
+        }
+    }
     let apply = |x: &[f64]| {
         let mut out: Vec<f64> = x.iter().map(|v| PULL * v).collect();
         for row in rows {
-            let inner = interpolate(x, row);
+            let inner = row.interpolate(x);
             for corner in &row.corners {
                 out[corner.index] += corner.weight * inner;
             }
         }
         out
     };
-    let mut residual = vec![0.0; start.len()];
-    for row in rows {
-        let excess = value(row) - interpolate(start, row);
-        for corner in &row.corners {
-            residual[corner.index] += corner.weight * excess;
-        }
-    }
+    let scaled = |r: &[f64]| r.iter().zip(&curvature).map(|(r, c)| r / c).collect::<Vec<f64>>();
     let mut change = vec![0.0; start.len()];
-    let mut direction = residual.clone();
-    let mut square = dot(&residual, &residual);
-    let enough = 1e-16 * square;
-    for _ in 0..200 {
+    let mut direction = scaled(&residual);
+    let mut square = dot(&residual, &direction);
+    let enough = 1e-12 * square;
+    for _ in 0..100 {
         if square <= enough {
             break;
         }
@@ -129,8 +143,9 @@ fn least_squares(start: &[f64], rows: &[Row], value: fn(&Row) -> f64) -> Vec<f64
             change[i] += step * direction[i];
             residual[i] -= step * image[i];
         }
-        let next = dot(&residual, &residual);
-        for (d, r) in direction.iter_mut().zip(&residual) {
+        let preconditioned = scaled(&residual);
+        let next = dot(&residual, &preconditioned);
+        for (d, r) in direction.iter_mut().zip(&preconditioned) {
             *d = r + next / square * *d;
         }
         square = next;
@@ -138,14 +153,9 @@ fn least_squares(start: &[f64], rows: &[Row], value: fn(&Row) -> f64) -> Vec<f64
     start.iter().zip(change).map(|(x, d)| x + d).collect()
 }
 
-/// The values of entries that share a lobe, made equal.
+/// The values of the owners, given to those that follow them.
 fn tied(lattice: &Lattice, values: &[f64]) -> Vec<f64> {
-    let mut sums = vec![(0.0, 0.0); values.len()];
-    for (tie, value) in lattice.ties.iter().zip(values) {
-        sums[tie.owner].0 += value;
-        sums[tie.owner].1 += 1.0;
-    }
-    lattice.ties.iter().map(|tie| sums[tie.owner].0 / sums[tie.owner].1).collect()
+    lattice.ties.iter().map(|tie| values[tie.owner]).collect()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -31,6 +31,22 @@ pub fn training(rng: &mut SplitMix64, count: usize, isotropic: bool) -> Vec<Quer
         .collect()
 }
 
+/// Queries for magnitude and Fresnel: the standard draw up to 89.5°, every fourth query near grazing and near α = 0, where both
+/// change fastest. There α is even in its logarithm and θ crowds towards 89.5°.
+pub fn grazing(rng: &mut SplitMix64, count: usize, isotropic: bool) -> Vec<Query> {
+    (0..count)
+        .map(|i| {
+            let mut query = one(rng, isotropic, 0.008, 0.04, 89.5);
+            if i % 4 == 3 {
+                let alpha = 0.008 * 125.0_f64.powf(rng.unit());
+                (query.alpha_x, query.alpha_y) = (alpha, alpha * query.alpha_y / query.alpha_x);
+                query.theta = (89.5 - 35.0 * rng.unit().powi(2)).to_radians();
+            }
+            query
+        })
+        .collect()
+}
+
 fn one(
     rng: &mut SplitMix64,
     isotropic: bool,

@@ -63,6 +63,7 @@ pub fn assemble(
 ) -> Vec<DMat3> {
     let mut m = unsmoothed(lattice, owners, fitted);
     gauge::smooth(axes, lattice, &mut m);
+    gauge::scale(axes, lattice, &mut m);
     m
 }
 

@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 
+mod albedo;
 mod bfgs;
 pub mod brdf;
 pub mod channels;
@@ -42,6 +43,7 @@ mod start;
 mod symmetry;
 mod verify;
 
+pub use albedo::{DiskNode, DiskRule};
 pub use bfgs::{Point, Stop};
 pub use brdf::{Beckmann, Brdf, CharlieSheen, DisneyDiffuse, GgxFamily, OrenNayar};
 pub use entry::{EntryFit, fit_entry, refine_by, refine_by_simplex, refine_entry};

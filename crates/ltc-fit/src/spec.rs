@@ -214,14 +214,16 @@ impl FitSpec {
     }
 }
 
-/// 8⁴ nodes, evenly spaced. The widths begin above 0: a lobe of width 0 is no lobe, and an entry that stands for one would
-/// be fitted to nothing but its neighbours' wishes. Narrower queries get the narrowest lobe there is.
+/// 8⁴ nodes, denser towards grazing views and narrow widths, where lobes change fastest. The widths begin above 0: a lobe of
+/// width 0 is no lobe, and an entry that stands for one would be fitted to nothing but its neighbours' wishes. Narrower
+/// queries get the narrowest lobe there is.
 fn anisotropic_axes() -> Vec<Axis> {
     use Quantity::{Alpha, Lambda, Phi, Theta};
-    let mut axes = [Theta, Phi, Alpha, Lambda].map(|q| Axis::full(q, Mapping::Linear, 8));
-    axes[2].domain[0] = 0.005;
-    axes[3].domain[0] = 0.03;
-    axes.to_vec()
+    let mut alpha = Axis::full(Alpha, Mapping::Sqrt, 8);
+    alpha.domain[0] = 0.005;
+    let mut lambda = Axis::full(Lambda, Mapping::Sqrt, 8);
+    lambda.domain[0] = 0.03;
+    vec![Axis::full(Theta, Mapping::HalfTangent, 8), Axis::full(Phi, Mapping::Linear, 8), alpha, lambda]
 }
 
 #[cfg(test)]

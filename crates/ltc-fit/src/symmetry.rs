@@ -28,6 +28,16 @@ impl Node {
         Alpha::new(self.alpha, self.alpha * self.lambda)
     }
 
+    /// The value of one of its quantities.
+    pub fn value(&self, quantity: Quantity) -> f64 {
+        match quantity {
+            Quantity::Theta => self.theta,
+            Quantity::Phi => self.phi,
+            Quantity::Alpha => self.alpha,
+            Quantity::Lambda => self.lambda,
+        }
+    }
+
     /// The view direction.
     pub fn wo(&self) -> glam::DVec3 {
         crate::direction(self.theta, self.phi)

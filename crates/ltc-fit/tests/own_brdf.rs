@@ -32,7 +32,7 @@ fn small() -> FitSpec {
     (spec.name, spec.brdf) = ("flat".to_owned(), "flat".to_owned());
     spec.axes.iter_mut().for_each(|axis| axis.len = 3);
     (spec.joint.steps, spec.joint.queries, spec.joint.samples) = (20, 64, 64);
-    (spec.channels.samples, spec.channels.queries) = (1024, 100);
+    (spec.channels.samples, spec.channels.queries) = (4096, 100);
     (spec.measure.samples, spec.measure.queries) = (1024, 200);
     spec
 }

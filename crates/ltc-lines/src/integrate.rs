@@ -4,6 +4,7 @@ use ltc_core::{AnyLight, Horizon, Ltc, Matrix, Real};
 use ltc_table::{Catalogue, Query};
 use serde::{Deserialize, Serialize};
 
+use crate::object::reason;
 use crate::{LightLine, object};
 
 /// One line of input.
@@ -55,8 +56,8 @@ impl Integration {
     pub fn on_cpu<R: Real>(&self) -> Result<Answer, String> {
         let mut value = 0.0;
         for (weight, m) in &self.lobes {
-            let ltc = Ltc::<R>::new(R::Mat3::from_row_array(m.map(R::of))).map_err(|e| e.to_string())?;
-            let fraction = self.light.integrate(&ltc, Horizon::BOTH).map_err(|e| e.to_string())?;
+            let ltc = Ltc::<R>::new(R::Mat3::from_row_array(m.map(R::of))).map_err(reason)?;
+            let fraction = self.light.integrate(&ltc, Horizon::BOTH).map_err(reason)?;
             value += weight * fraction.to_f64();
         }
         Ok(Answer { value, precision: if size_of::<R>() == 4 { "f32" } else { "f64" } })
@@ -73,10 +74,10 @@ fn lobes(catalogue: &Catalogue, line: &Line) -> Result<Vec<(f64, [f64; 9])>, Str
             None,
             Some(table),
         ) => {
-            let table = catalogue.find(table).map_err(|e| e.to_string())?.table();
+            let table = catalogue.find(table).map_err(reason)?.table();
             let phi = phi.unwrap_or(0.0);
             let query = Query { theta: *theta, phi, alpha_x: *alpha_x, alpha_y: *alpha_y };
-            let lookup = table.lookup(&query).map_err(|e| e.to_string())?;
+            let lookup = table.lookup(&query).map_err(reason)?;
             Ok(lookup.lobes.into_iter().map(|lobe| (lobe.weight, lobe.m)).collect())
         }
         _ => {

@@ -4,6 +4,7 @@ use ltc_table::{Lookup, Query, Table};
 use serde::Deserialize;
 
 use crate::object;
+use crate::object::reason;
 
 /// A query with nothing else beside it.
 #[derive(Deserialize)]
@@ -22,5 +23,5 @@ struct Line {
 /// What is wrong with the line.
 pub fn lookup(table: &Table, line: &str) -> Result<Lookup, String> {
     let Line { theta, phi, alpha_x, alpha_y } = object(line)?;
-    table.lookup(&Query { theta, phi, alpha_x, alpha_y }).map_err(|e| e.to_string())
+    table.lookup(&Query { theta, phi, alpha_x, alpha_y }).map_err(reason)
 }

@@ -40,8 +40,10 @@ pub enum GpuError {
         limit: u32,
     },
     /// A table's axis is spaced in a way that the shaders do not know.
-    #[error("the shaders know the mapping sqrt_one_minus_cos for theta only, not for {quantity}")]
+    #[error("the shaders know the mapping {mapping} for theta only, not for {quantity}")]
     UnsupportedAxis {
+        /// How it is spaced.
+        mapping: &'static str,
         /// The axis.
         quantity: &'static str,
     },

@@ -98,6 +98,7 @@ impl AxisUniform {
             Mapping::Linear => 0,
             Mapping::Sqrt => 1,
             Mapping::SqrtOneMinusCos => 2,
+            Mapping::HalfTangent => 3,
         };
         Self { low: low as f32, scale: (last / (high - low)) as f32, last: last as f32, mapping }
     }
@@ -110,8 +111,9 @@ impl AxesUniform {
             return Ok(Self::zeroed());
         };
         for axis in rest {
-            if axis.mapping == Mapping::SqrtOneMinusCos {
-                return Err(GpuError::UnsupportedAxis { quantity: axis.quantity.name() });
+            if matches!(axis.mapping, Mapping::SqrtOneMinusCos | Mapping::HalfTangent) {
+                let (mapping, quantity) = (axis.mapping.name(), axis.quantity.name());
+                return Err(GpuError::UnsupportedAxis { mapping, quantity });
             }
         }
         let mut axes = Self { theta: AxisUniform::of(theta), ..Self::zeroed() };

@@ -42,9 +42,22 @@ pub enum Mapping {
     Sqrt,
     /// `u = √(1 − cos x)`, for θ.
     SqrtOneMinusCos,
+    /// `u = tan(x/2)`, for θ: the radius of the stereographic projection. Nodes lie twice as dense at π/2 as at 0, and
+    /// `sin x / (1 + cos x)` needs no inverse function.
+    HalfTangent,
 }
 
 impl Mapping {
+    /// The name in manifests.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Sqrt => "sqrt",
+            Self::SqrtOneMinusCos => "sqrt_one_minus_cos",
+            Self::HalfTangent => "half_tangent",
+        }
+    }
+
     /// The mapped coordinate of a value.
     pub fn coordinate(self, value: f64) -> f64 {
         match self {
@@ -52,6 +65,7 @@ impl Mapping {
             Self::Sqrt => value.max(0.0).sqrt(),
             // 1 − cos x = 2 sin²(x/2), without the cancellation near 0.
             Self::SqrtOneMinusCos => core::f64::consts::SQRT_2 * (0.5 * value).sin().abs(),
+            Self::HalfTangent => (0.5 * value).tan(),
         }
     }
 
@@ -61,6 +75,17 @@ impl Mapping {
             Self::Linear => coordinate,
             Self::Sqrt => coordinate * coordinate,
             Self::SqrtOneMinusCos => 2.0 * (coordinate / core::f64::consts::SQRT_2).clamp(0.0, 1.0).asin(),
+            Self::HalfTangent => 2.0 * coordinate.atan(),
+        }
+    }
+
+    /// How fast the value grows with the mapped coordinate, `dx/du`.
+    pub fn slope(self, value: f64) -> f64 {
+        match self {
+            Self::Linear => 1.0,
+            Self::Sqrt => 2.0 * value.max(0.0).sqrt(),
+            Self::SqrtOneMinusCos => core::f64::consts::SQRT_2 / (0.5 * value).cos(),
+            Self::HalfTangent => 2.0 * (0.5 * value).cos().powi(2),
         }
     }
 }
@@ -141,9 +166,30 @@ impl Axis {
 mod tests {
     use super::*;
 
+    const MAPPINGS: [Mapping; 4] =
+        [Mapping::Linear, Mapping::Sqrt, Mapping::SqrtOneMinusCos, Mapping::HalfTangent];
+
+    #[test]
+    fn the_name_is_the_manifests() {
+        for mapping in MAPPINGS {
+            assert_eq!(serde_json::to_value(mapping).unwrap(), mapping.name());
+        }
+    }
+
+    #[test]
+    fn the_slope_is_the_difference_quotient() {
+        for mapping in MAPPINGS {
+            for value in [0.1, 0.7, 1.0] {
+                let u = mapping.coordinate(value);
+                let quotient = (mapping.value(u + 1e-5) - mapping.value(u - 1e-5)) / 2e-5;
+                assert!((quotient / mapping.slope(value) - 1.0).abs() < 1e-8, "{mapping:?} {value}");
+            }
+        }
+    }
+
     #[test]
     fn nodes_and_locate_are_each_others_inverse() {
-        for mapping in [Mapping::Linear, Mapping::Sqrt, Mapping::SqrtOneMinusCos] {
+        for mapping in MAPPINGS {
             for quantity in [Quantity::Theta, Quantity::Alpha] {
                 let axis = Axis::full(quantity, mapping, 9);
                 for i in 0..9 {

@@ -76,6 +76,18 @@ pub enum TableError {
         /// Why.
         reason: String,
     },
+    /// A DDS file is not readable.
+    #[error("dds: {reason}")]
+    Dds {
+        /// Why.
+        reason: String,
+    },
+    /// A table cannot be written in the layout that engines ship, or not be read in it.
+    #[error("no drop-in: {reason}")]
+    NotDropIn {
+        /// Why.
+        reason: String,
+    },
     /// A file could not be read or written.
     #[error("{path}: {source}")]
     Io {

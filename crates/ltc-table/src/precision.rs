@@ -54,6 +54,15 @@ impl Precision {
         }
     }
 
+    /// The value of little-endian bytes; 0 where there are not as many as [`Precision::bytes`].
+    pub fn get(self, bytes: &[u8]) -> f64 {
+        match self {
+            Self::F16 => bytes.try_into().map_or(0.0, |b| f16::from_le_bytes(b).to_f64()),
+            Self::F32 => bytes.try_into().map_or(0.0, |b| f64::from(f32::from_le_bytes(b))),
+            Self::F64 => bytes.try_into().map_or(0.0, f64::from_le_bytes),
+        }
+    }
+
     /// Appends the little-endian bytes of `value`.
     pub fn put(self, value: f64, out: &mut Vec<u8>) {
         match self {
@@ -111,6 +120,7 @@ mod tests {
             let mut bytes = Vec::new();
             precision.put(0.1, &mut bytes);
             assert_eq!(bytes.len(), precision.bytes());
+            assert_eq!(precision.get(&bytes), precision.round(0.1));
         }
         assert_eq!(Precision::F32.round(0.1), f64::from(0.1_f32));
         assert!((Precision::F16.round(0.1) - 0.1).abs() < 3e-5);

@@ -4,7 +4,7 @@ use glam::DVec3;
 use ltc_core::{Alpha, Ggx, Real, Vector, schlick_weight};
 use serde_json::{Value, json};
 
-use crate::{Brdf, DiskPoints, Lobe};
+use crate::{Brdf, DiskPoints, DiskRule, Lobe, albedo::ggx_albedo};
 
 /// GGX with height-correlated masking and shadowing, F = 1.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,10 +65,14 @@ impl Brdf for GgxFamily {
         }
         lobe.finish(n);
     }
+
+    fn albedo(&self, wo: DVec3, alpha: Alpha, rule: &DiskRule, _: &mut Lobe) -> (f64, f64) {
+        ggx_albedo(wo, alpha, rule)
+    }
 }
 
 /// `Λ(ω) cos θ`, see [`ltc_core::Ggx`].
-fn lambda_cos(w: DVec3, alpha: Alpha) -> f64 {
+pub(crate) fn lambda_cos(w: DVec3, alpha: Alpha) -> f64 {
     let s2 = (alpha.x() * w.x).squared() + (alpha.y() * w.y).squared();
     0.5 * s2 / (w.z + (w.z * w.z + s2).sqrt()).max(f64::MIN_POSITIVE)
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use ltc_core::{Alpha, Vector, schlick_weight};
 use serde_json::{Value, json};
 
-use crate::{DiskPoints, Lobe};
+use crate::{DiskPoints, DiskRule, Lobe};
 
 mod beckmann;
 mod charlie;
@@ -20,6 +20,7 @@ pub use charlie::CharlieSheen;
 pub(crate) use check::check;
 pub use disney_diffuse::DisneyDiffuse;
 pub use ggx::GgxFamily;
+pub(crate) use ggx::lambda_cos;
 pub use oren_nayar::OrenNayar;
 pub(crate) use presets::preset;
 
@@ -70,6 +71,12 @@ pub trait Brdf: Sync {
     /// The density of [`Brdf::sample`] in 1/sr; positive wherever [`Brdf::eval_cos`] is.
     fn pdf(&self, wo: DVec3, wi: DVec3, alpha: Alpha) -> f64 {
         proposal::mixture_pdf(wo, wi, alpha)
+    }
+
+    /// Magnitude and Fresnel term of the lobe, by `rule`. Unless a BRDF knows better, by as many samples of the lobe.
+    fn albedo(&self, wo: DVec3, alpha: Alpha, rule: &DiskRule, lobe: &mut Lobe) -> (f64, f64) {
+        self.sample_lobe(wo, alpha, &rule.points, lobe);
+        (lobe.magnitude, lobe.fresnel)
     }
 
     /// Replaces `lobe` by samples of the cosine-weighted BRDF seen from `wo`, one for each of `points` that leads above

@@ -8,7 +8,7 @@ struct LtcAxis {
     scale: f32,
     // Number of cells: the last node.
     last: f32,
-    // LTC_LINEAR, LTC_SQRT or LTC_SQRT_ONE_MINUS_COS.
+    // LTC_LINEAR, LTC_SQRT, LTC_SQRT_ONE_MINUS_COS or LTC_HALF_TANGENT.
     mapping: u32,
 }
 
@@ -22,6 +22,7 @@ struct LtcAxes {
 const LTC_LINEAR: u32 = 0u;
 const LTC_SQRT: u32 = 1u;
 const LTC_SQRT_ONE_MINUS_COS: u32 = 2u;
+const LTC_HALF_TANGENT: u32 = 3u;
 
 // A place along an axis: between nodes `cell` and `cell + 1`, `t` of the way.
 struct LtcPlace {
@@ -50,7 +51,7 @@ fn ltc_place(axis: LtcAxis, coordinate: f32) -> LtcPlace {
     return LtcPlace(u32(cell), position - cell);
 }
 
-// For every quantity but theta; LTC_SQRT_ONE_MINUS_COS is for theta alone.
+// For every quantity but theta; LTC_SQRT_ONE_MINUS_COS and LTC_HALF_TANGENT are for theta alone.
 fn ltc_place_of_value(axis: LtcAxis, value: f32) -> LtcPlace {
     return ltc_place(axis, select(value, sqrt(max(value, 0.0)), axis.mapping == LTC_SQRT));
 }
@@ -61,6 +62,9 @@ fn ltc_place_of_theta(axis: LtcAxis, wo: vec3f) -> LtcPlace {
     let squared_sine = wo.x * wo.x + wo.y * wo.y;
     if axis.mapping == LTC_SQRT_ONE_MINUS_COS {
         return ltc_place(axis, sqrt(squared_sine / (1.0 + cosine)));
+    }
+    if axis.mapping == LTC_HALF_TANGENT {
+        return ltc_place(axis, sqrt(squared_sine) / (1.0 + cosine));
     }
     return ltc_place_of_value(axis, ltc_atan2(sqrt(squared_sine), cosine));
 }

@@ -75,6 +75,7 @@ fn all_tables() -> Vec<(&'static str, Table)> {
     vec![
         ("linear", tables::anisotropic(Mapping::Linear, Mapping::Linear)),
         ("sqrt", tables::anisotropic(Mapping::SqrtOneMinusCos, Mapping::Sqrt)),
+        ("half tangent", tables::anisotropic(Mapping::HalfTangent, Mapping::Sqrt)),
         ("cropped", cropped()),
     ]
 }
