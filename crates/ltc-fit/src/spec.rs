@@ -6,7 +6,7 @@ use ltc_table::{Axis, Floors, Mapping, Quantity, check_name};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Brdf, FitError, GgxFamily, channels::ChannelSettings, entries::EntrySettings, joint::JointSettings,
+    Brdf, FitError, GgxFamily, Layout, channels::ChannelSettings, entries::EntrySettings, joint::JointSettings,
     measure::MeasureSettings,
 };
 
@@ -36,23 +36,19 @@ pub struct FitSpec {
 
 impl FitSpec {
     /// Names of the presets.
-    pub const PRESETS: [&'static str; 2] = ["ggx-isotropic", "ggx-anisotropic"];
+    pub const PRESETS: [&'static str; 3] = ["ggx-isotropic", "ggx-anisotropic", "ggx-isotropic-dropin"];
 
     /// A specification by name.
     ///
     /// # Errors
     /// [`FitError::NoSuchPreset`].
     pub fn preset(name: &str) -> Result<Self, FitError> {
-        use Quantity::{Alpha, Theta};
-        let (axes, joint) = match name {
-            "ggx-isotropic" => (
-                vec![Axis::full(Theta, Mapping::SqrtOneMinusCos, 64), Axis::full(Alpha, Mapping::Sqrt, 64)],
-                JointSettings { steps: 200, queries: 2048, samples: 256, learning_rate: 3e-3, seed: 3 },
-            ),
-            "ggx-anisotropic" => (
-                anisotropic_axes(),
-                JointSettings { steps: 1500, queries: 2048, samples: 256, learning_rate: 6e-3, seed: 3 },
-            ),
+        let layout = if name == "ggx-isotropic-dropin" { Layout::DropIn } else { Layout::Matrix };
+        let (axes, steps, learning_rate, channel_queries) = match name {
+            "ggx-isotropic" | "ggx-isotropic-dropin" => {
+                (ltc_table::drop_in::axes(64).to_vec(), 200, 3e-3, 20_000)
+            }
+            "ggx-anisotropic" => (anisotropic_axes(), 1500, 6e-3, 60_000),
             _ => {
                 let known = Self::PRESETS.join(", ");
                 return Err(FitError::NoSuchPreset { name: name.to_owned(), known });
@@ -65,9 +61,9 @@ impl FitSpec {
             floors: Floors { alpha: 1e-3, lambda: 0.03, theta_max: 89.5_f64.to_radians() },
             objective: "total_variation".to_owned(),
             entries: EntrySettings { samples: 512, iterations: 100 },
-            joint,
-            channels: ChannelSettings { samples: 2048, queries: 20_000, seed: 5 },
-            measure: MeasureSettings { queries: 3000, samples: 4096, seed: 77 },
+            joint: JointSettings { steps, queries: 2048, samples: 256, learning_rate, seed: 3, layout },
+            channels: ChannelSettings { samples: 2048, queries: channel_queries, seed: 5 },
+            measure: MeasureSettings { queries: 3000, samples: 4096, seed: 77, layout },
         })
     }
 
