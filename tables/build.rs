@@ -20,7 +20,9 @@ fn main() {
 
 fn subfolders(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut folders: Vec<_> = entries.map(|e| e.path()).filter(|p| p.is_dir()).collect();
+    // A fit that was interrupted leaves hidden folders.
+    let seen = entries.filter(|e| !e.file_name().to_string_lossy().starts_with('.'));
+    let mut folders: Vec<_> = seen.map(|e| e.path()).filter(|p| p.is_dir()).collect();
     folders.sort();
     folders
 }

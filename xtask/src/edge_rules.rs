@@ -24,7 +24,7 @@ const TOPS: &[&str] = &["ltc-cli", "ltc-tests", "ltc-benches", "xtask"];
 /// The rules of this workspace.
 pub const RULES: &[Rule] = &[
     // The mathematics is for everybody: whoever takes it takes nothing else.
-    Rule::Only { from: "ltc-core", allowed: &["glam", "libm"] },
+    Rule::Only { from: "ltc-core", allowed: &["glam", "libm", "fearless_simd"] },
     // An oracle shares no code with what it judges.
     Rule::Never { from: "ltc-reference", targets: &["ltc-*", "wgpu", "axum", "tokio"] },
     // Whoever wants only lookups compiles no GPU stack, no web server and no thread pool.
@@ -33,6 +33,8 @@ pub const RULES: &[Rule] = &[
     // The shipped tables are data and its reader.
     Rule::OursOnly { from: "ltc-tables", allowed: &["ltc-table"] },
     Rule::Never { from: "ltc-tables", targets: &["wgpu", "axum", "tokio", "rayon"] },
+    // Lines are understood without a GPU, so that fuzzers build fast.
+    Rule::OursOnly { from: "ltc-lines", allowed: &["ltc-core", "ltc-table"] },
     // Fitting runs on machines without a GPU, and in workers without a server.
     Rule::Never { from: "ltc-fit", targets: &["wgpu", "axum", "tokio"] },
     // Shading takes tables as they are, wherever they come from.

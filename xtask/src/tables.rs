@@ -9,7 +9,14 @@ use crate::step::Steps;
 use crate::workspace::{Profile, Workspace};
 
 /// The presets that are shipped.
-const PRESETS: [&str; 2] = ["ggx-isotropic", "ggx-anisotropic"];
+const PRESETS: [&str; 6] = [
+    "ggx-isotropic",
+    "ggx-anisotropic",
+    "beckmann-isotropic",
+    "disney-diffuse",
+    "oren-nayar",
+    "charlie-sheen",
+];
 
 /// Fits each preset into `tables/`, then verifies it there.
 pub fn run(workspace: &Workspace) -> Result<()> {

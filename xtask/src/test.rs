@@ -18,7 +18,7 @@ struct Part {
 }
 
 /// In this order: set-up first, then what is quick to fail.
-const PARTS: [Part; 9] = [
+const PARTS: [Part; 10] = [
     Part { what: "set-up: a driver for the GPU tests", slow: false, work: graphics },
     Part { what: "set-up: what the outside readers need", slow: true, work: outside_tools },
     Part { what: "formatting: cargo fmt --check", slow: false, work: formatting },
@@ -29,6 +29,7 @@ const PARTS: [Part; 9] = [
     },
     Part { what: "lints: cargo clippy, warnings are errors", slow: false, work: lints },
     Part { what: "tests of all crates, GPU tests included", slow: false, work: tests },
+    Part { what: "ten million lights made to break things: release", slow: true, work: adversarial },
     Part { what: "examples in the documentation: cargo test --doc", slow: true, work: doc_tests },
     Part { what: "documentation: cargo doc, warnings are errors", slow: true, work: documentation },
     Part { what: "outside readers: the scripts in tests/outside", slow: true, work: outside::run },
@@ -93,6 +94,11 @@ fn tests(workspace: &Workspace) -> Result<Outcome> {
     }
     say("    there is no cargo-nextest: cargo test does the same, more slowly");
     cargo(workspace, &["test", "--workspace", "--lib", "--bins", "--tests"])
+}
+
+/// The same test runs on fewer lights among all others, unoptimised.
+fn adversarial(workspace: &Workspace) -> Result<Outcome> {
+    cargo(workspace, &["test", "--release", "-p", "ltc-core", "--test", "adversarial"])
 }
 
 fn doc_tests(workspace: &Workspace) -> Result<Outcome> {

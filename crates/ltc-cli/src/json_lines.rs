@@ -3,17 +3,7 @@
 use std::io::{BufRead, BufWriter, Write};
 
 use anyhow::{Context, Result};
-use serde::{Serialize, de::DeserializeOwned};
-
-/// The object of one line. Arrays, which serde would take for an object's fields in order, are refused.
-pub fn object<T: DeserializeOwned>(line: &str) -> Result<T, String> {
-    if !line.trim_start().starts_with('{') {
-        // For what is no JSON at all, the parser's words; for other JSON, ours.
-        serde_json::from_str::<serde_json::Value>(line).map_err(|e| e.to_string())?;
-        return Err("must be a JSON object".to_owned());
-    }
-    serde_json::from_str(line).map_err(|e| e.to_string())
-}
+use serde::Serialize;
 
 /// Reads stdin line by line, passing over empty lines, and writes `answer`'s result for each.
 ///

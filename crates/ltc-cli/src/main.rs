@@ -10,7 +10,10 @@ macro_rules! outln {
 }
 
 mod commands;
+mod fit_progress;
+mod interrupt;
 mod json_lines;
+mod picture;
 mod progress;
 mod tables;
 
@@ -36,6 +39,7 @@ enum Command {
     Fit(commands::fit::Fit),
     Tables(commands::tables::List),
     Inspect(commands::tables::Inspect),
+    Diff(commands::diff::Diff),
     Verify(commands::verify::Verify),
     Lookup(commands::lookup::Lookup),
     Integrate(commands::integrate::Integrate),
@@ -51,6 +55,7 @@ fn main() -> ExitCode {
         Command::Fit(command) => command.run(),
         Command::Tables(command) => command.run(tables),
         Command::Inspect(command) => command.run(tables),
+        Command::Diff(command) => command.run(tables),
         Command::Verify(command) => command.run(tables),
         Command::Lookup(command) => command.run(tables),
         Command::Integrate(command) => command.run(tables),
@@ -60,6 +65,12 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) if error.is::<interrupt::Interrupted>() => {
+            eprintln!("{}", one_line(&error));
+            error
+                .downcast_ref::<interrupt::Interrupted>()
+                .map_or(ExitCode::FAILURE, interrupt::Interrupted::exit_code)
+        }
         Err(error) => {
             eprintln!("error: {}", one_line(&error));
             ExitCode::FAILURE

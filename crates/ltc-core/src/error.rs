@@ -31,6 +31,11 @@ pub enum InputError {
         /// How many it has.
         count: usize,
     },
+    /// There must be at least one of something.
+    Empty {
+        /// What is empty.
+        name: &'static str,
+    },
     /// Two directions that must span a plane are parallel, or one is zero.
     Degenerate {
         /// What is degenerate.
@@ -52,6 +57,7 @@ impl fmt::Display for InputError {
                 )
             }
             Self::TooFewVertices { count } => write!(f, "a polygon needs at least 3 vertices, has {count}"),
+            Self::Empty { name } => write!(f, "{name} is empty"),
             Self::Degenerate { name } => write!(f, "{name} is zero or parallel to what it must differ from"),
         }
     }

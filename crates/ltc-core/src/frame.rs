@@ -48,13 +48,8 @@ impl<R: Real> ShadingFrame<R> {
         Self::new(normal, wo)
     }
 
-    /// Duff et al. 2017, "Building an Orthonormal Basis, Revisited": no singular direction.
     fn around(n: R::Vec3) -> Self {
-        let sign = if n.z() < R::ZERO { -R::ONE } else { R::ONE };
-        let a = -R::ONE / (sign + n.z());
-        let b = n.x() * n.y() * a;
-        let t = R::Vec3::new(R::ONE + sign * n.x() * n.x() * a, sign * b, -sign * n.x());
-        Self::from_unit(n, t)
+        Self::from_unit(n, tangent_to::<R>(n))
     }
 
     fn from_unit(n: R::Vec3, t: R::Vec3) -> Self {
@@ -86,6 +81,15 @@ impl<R: Real> ShadingFrame<R> {
     pub fn world_from_shading(&self, v: R::Vec3) -> R::Vec3 {
         self.world_from_shading.apply(v)
     }
+}
+
+/// A unit vector at right angles to the unit vector `n` (Duff et al. 2017, "Building an Orthonormal Basis, Revisited": no
+/// singular direction).
+pub(crate) fn tangent_to<R: Real>(n: R::Vec3) -> R::Vec3 {
+    let sign = if n.z() < R::ZERO { -R::ONE } else { R::ONE };
+    let a = -R::ONE / (sign + n.z());
+    let b = n.x() * n.y() * a;
+    R::Vec3::new(R::ONE + sign * n.x() * n.x() * a, sign * b, -sign * n.x())
 }
 
 #[cfg(test)]

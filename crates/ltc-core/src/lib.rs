@@ -26,6 +26,7 @@
 //! # Ok::<(), ltc_core::InputError>(())
 //! ```
 
+mod distribution;
 mod error;
 mod frame;
 mod fresnel;
@@ -39,12 +40,19 @@ mod roughness;
 mod testing;
 mod texture;
 
+pub use distribution::{
+    Base, ClampedCosine, ClampedCosineSquared, ClosedForm, Distribution, LinearlyTransformed, LtcMixture,
+    PolygonBase, UniformHemisphere, UniformSphere,
+};
 pub use error::{InputError, check_range};
 pub use frame::ShadingFrame;
 pub use fresnel::{reflectance, schlick, schlick_weight};
 pub use ggx::Ggx;
 pub use light::{
-    Horizon, Light, LightSample, Polygon, SampleLight, Sides, TextureFetch, TextureFrame, TexturedPolygon,
+    AnyLight, Cubic, Cylinder, Disk, EdgeForm, Ellipse, Exact, Horizon, Light, LightSample, Line,
+    LineCylinder, LineSample, LtcBatch, Polygon, PolygonSampler, PublishedRational, Quad, QuadBatch,
+    Rational, SampleLight, Sides, Sphere, Strip, TextureFetch, TextureFrame, TexturedPolygon, clipped_sphere,
+    clipped_sphere_fit,
 };
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};

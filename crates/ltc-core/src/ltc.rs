@@ -1,92 +1,39 @@
 //! Linearly transformed cosines.
 
-use crate::{InputError, Matrix, Real, Vector};
+use crate::{ClampedCosine, LinearlyTransformed, Real};
 
-/// A clamped cosine whose directions are moved by a matrix `M`: the distribution
-/// `D(ω) = Do(M⁻¹ω / ‖M⁻¹ω‖) · |M⁻¹| / ‖M⁻¹ω‖³`, `Do(ω) = max(0, z)/π`
-/// (Heitz et al. 2016, eq. 1 and 4). It integrates to 1 over the sphere.
+/// A linearly transformed cosine: a clamped cosine whose directions are moved by a matrix `M`,
+/// `D(ω) = Do(M⁻¹ω / ‖M⁻¹ω‖) · |M⁻¹| / ‖M⁻¹ω‖³`, `Do(ω) = max(0, z)/π` (Heitz et al. 2016, eq. 1 and 4). It integrates
+/// to 1 over the sphere.
 ///
 /// `M = target_from_cosine` maps cosine space to the lobe; det M > 0. Its scale is free and kept at 1 for the largest
 /// entry.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ltc<R: Real> {
-    target_from_cosine: R::Mat3,
-    cosine_from_target: R::Mat3,
-    /// Determinant of `target_from_cosine`.
-    determinant: R,
-}
+///
+/// ```
+/// use glam::{DMat3, DVec3};
+/// use ltc_core::{Ltc, Matrix};
+///
+/// let ltc = Ltc::<f64>::new(DMat3::from_row_array([0.3, 0.0, 0.4, 0.0, 0.2, 0.0, -0.1, 0.0, 0.9]))?;
+/// assert!(ltc.density(ltc.sample([0.2, 0.7])) > 0.0);
+/// assert!(ltc.density(-ltc.median()) == 0.0);
+/// # Ok::<(), ltc_core::InputError>(())
+/// ```
+pub type Ltc<R> = LinearlyTransformed<R, ClampedCosine>;
 
 impl<R: Real> Ltc<R> {
-    /// The LTC of `M = target_from_cosine`, any positive scale.
-    ///
-    /// # Errors
-    /// [`InputError::NotFinite`] for a NaN or infinite entry; [`InputError::SingularMatrix`] unless det M > 0 and M⁻¹
-    /// has finite entries in this precision.
-    pub fn new(target_from_cosine: R::Mat3) -> Result<Self, InputError> {
-        let columns = target_from_cosine.columns();
-        if !columns.iter().all(|c| c.is_finite()) {
-            return Err(InputError::NotFinite { name: "matrix m" });
-        }
-        let largest = columns[0].max_abs().max(columns[1].max_abs()).max(columns[2].max_abs());
-        if largest <= R::ZERO {
-            return Err(InputError::SingularMatrix { determinant: 0.0 });
-        }
-        let [c0, c1, c2] = columns.map(|c| R::Vec3::new(c.x() / largest, c.y() / largest, c.z() / largest));
-        let rows = [c1.cross(c2), c2.cross(c0), c0.cross(c1)];
-        let determinant = c0.dot(rows[0]);
-        let inverse_scale = R::ONE / determinant;
-        let [r0, r1, r2] = rows.map(|r| r * inverse_scale);
-        let valid = determinant > R::ZERO && [r0, r1, r2].iter().all(|r| r.is_finite());
-        if !valid {
-            return Err(InputError::SingularMatrix { determinant: determinant.to_f64() });
-        }
-        Ok(Self {
-            target_from_cosine: R::Mat3::from_columns(c0, c1, c2),
-            cosine_from_target: R::Mat3::from_columns(r0, r1, r2).transposed(),
-            determinant,
-        })
-    }
-
     /// The clamped cosine itself (M = identity): Lambert's diffuse lobe.
     pub fn cosine() -> Self {
-        let (o, l) = (R::ZERO, R::ONE);
-        let identity =
-            R::Mat3::from_columns(R::Vec3::new(l, o, o), R::Vec3::new(o, l, o), R::Vec3::new(o, o, l));
-        Self { target_from_cosine: identity, cosine_from_target: identity, determinant: l }
+        Self::identity()
     }
 
     /// `M`, with its largest entry scaled to 1.
     pub fn target_from_cosine(&self) -> R::Mat3 {
-        self.target_from_cosine
+        self.target_from_base()
     }
 
     /// `M⁻¹`, the inverse of [`Ltc::target_from_cosine`].
     pub fn cosine_from_target(&self) -> R::Mat3 {
-        self.cosine_from_target
-    }
-
-    /// Density at the unit direction `w`, in 1/sr.
-    pub fn density(&self, w: R::Vec3) -> R {
-        let wo = self.cosine_from_target.apply(w);
-        if wo.z() <= R::ZERO {
-            return R::ZERO;
-        }
-        let squared = wo.dot(wo);
-        wo.z() / (R::PI * self.determinant * squared * squared)
-    }
-
-    /// A direction of density [`Ltc::density`], from `u` ∈ [0, 1)² (2016 paper, Algorithm 1).
-    pub fn sample(&self, u: [R; 2]) -> R::Vec3 {
-        let r = u[0].sqrt();
-        let (sin, cos) = (R::of(2.0) * R::PI * u[1]).sin_cos();
-        let wo = R::Vec3::new(r * cos, r * sin, (R::ONE - u[0]).max(R::ZERO).sqrt());
-        self.target_from_cosine.apply(wo).try_unit().unwrap_or_else(|| self.median())
-    }
-
-    /// The median direction: every plane through it and the origin halves the lobe (2016 paper, §3.1).
-    pub fn median(&self) -> R::Vec3 {
-        let [_, _, c2] = self.target_from_cosine.columns();
-        c2.try_unit().unwrap_or(R::Vec3::new(R::ZERO, R::ZERO, R::ONE))
+        self.base_from_target()
     }
 }
 
@@ -94,6 +41,7 @@ impl<R: Real> Ltc<R> {
 mod tests {
     use super::*;
     use crate::testing::r2;
+    use crate::{InputError, Matrix as _};
     use glam::{DMat3, DVec3, Mat3};
 
     fn lobes() -> [Ltc<f64>; 3] {

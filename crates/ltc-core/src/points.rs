@@ -21,6 +21,11 @@ impl SplitMix64 {
         Self { state: seed }
     }
 
+    /// The seed of a generator that goes on as this one will.
+    pub fn seed(&self) -> u64 {
+        self.state
+    }
+
     /// The next 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
@@ -44,6 +49,14 @@ impl SplitMix64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_generator_goes_on_from_its_seed() {
+        let mut rng = SplitMix64::new(5);
+        rng.bits();
+        let mut again = SplitMix64::new(rng.seed());
+        assert_eq!(again.bits(), rng.bits());
+    }
 
     #[test]
     fn numbers_never_change() {

@@ -116,10 +116,19 @@ pub trait Real:
     fn abs(self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
+    /// Cube root.
+    fn cbrt(self) -> Self;
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
     /// Four-quadrant arc tangent of `self / x`.
     fn atan2(self, x: Self) -> Self;
+    /// `a·b − c·d` with a relative error below 2 ε however much cancels: f32 by f64, whose products are then exact, f64 by
+    /// a fused multiply-add (Kahan).
+    fn product_difference(a: Self, b: Self, c: Self, d: Self) -> Self;
+    /// The largest power of two that is not above `|self|`; 0 below [`Real::TINY`]. Scaling by it rounds nothing.
+    fn floor_power_of_two(self) -> Self;
+    /// Inverse hyperbolic tangent, for |self| < 1.
+    fn atanh(self) -> Self;
     /// The larger; the other one where one is NaN.
     fn max(self, other: Self) -> Self;
     /// The smaller; the other one where one is NaN.
@@ -135,8 +144,18 @@ pub trait Real:
     }
 }
 
+fn product_difference_f32(a: f32, b: f32, c: f32, d: f32) -> f32 {
+    (f64::from(a) * f64::from(b) - f64::from(c) * f64::from(d)) as f32
+}
+
+fn product_difference_f64(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    let product = c * d;
+    let rounding = (-c).mul_add(d, product);
+    a.mul_add(b, -product) + rounding
+}
+
 macro_rules! impl_real {
-    ($real:ident, $vec:ty, $mat:ty) => {
+    ($real:ident, $vec:ty, $mat:ty, $product_difference:ident) => {
         impl Real for $real {
             type Vec3 = $vec;
             type Mat3 = $mat;
@@ -167,12 +186,29 @@ macro_rules! impl_real {
                 $real::sqrt(self)
             }
             #[inline]
+            fn cbrt(self) -> Self {
+                $real::cbrt(self)
+            }
+            #[inline]
             fn sin_cos(self) -> (Self, Self) {
                 $real::sin_cos(self)
             }
             #[inline]
             fn atan2(self, x: Self) -> Self {
                 $real::atan2(self, x)
+            }
+            #[inline]
+            fn product_difference(a: Self, b: Self, c: Self, d: Self) -> Self {
+                $product_difference(a, b, c, d)
+            }
+            #[inline]
+            fn floor_power_of_two(self) -> Self {
+                // The bits of infinity are those of the exponent.
+                $real::from_bits(self.to_bits() & $real::INFINITY.to_bits())
+            }
+            #[inline]
+            fn atanh(self) -> Self {
+                $real::atanh(self)
             }
             #[inline]
             fn max(self, other: Self) -> Self {
@@ -257,8 +293,8 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f32, glam::Vec3, glam::Mat3);
-impl_real!(f64, glam::DVec3, glam::DMat3);
+impl_real!(f32, glam::Vec3, glam::Mat3, product_difference_f32);
+impl_real!(f64, glam::DVec3, glam::DMat3, product_difference_f64);
 
 #[cfg(test)]
 mod tests {
@@ -281,6 +317,24 @@ mod tests {
         assert_eq!(glam::DVec3::ZERO.try_unit(), None);
         assert_eq!(glam::DVec3::new(f64::NAN, 1.0, 0.0).try_unit(), None);
         assert_eq!(glam::DVec3::new(f64::INFINITY, 1.0, 0.0).try_unit(), None);
+    }
+
+    #[test]
+    fn differences_of_products_keep_their_digits() {
+        // (1 + ε)(1 − ε) − 1·1 = −ε², which a plain difference rounds to 0 or to a multiple of ε.
+        let e = f64::EPSILON;
+        assert_eq!(f64::product_difference(1.0 + e, 1.0 - e, 1.0, 1.0), -e * e);
+        let e = f32::EPSILON;
+        assert_eq!(f32::product_difference(1.0 + e, 1.0 - e, 1.0, 1.0), -e * e);
+    }
+
+    #[test]
+    fn powers_of_two_are_at_most_the_number() {
+        for (x, power) in [(1.0, 1.0), (-1.9, 1.0), (5.0, 4.0), (0.3, 0.25), (0.0, 0.0)] {
+            assert_eq!(f64::floor_power_of_two(x), power);
+            assert_eq!(f32::floor_power_of_two(x as f32), power as f32);
+        }
+        assert_eq!((f32::TINY / 2.0).floor_power_of_two(), 0.0);
     }
 
     #[test]

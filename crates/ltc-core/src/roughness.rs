@@ -77,6 +77,11 @@ impl Alpha {
         self.x.max(self.y)
     }
 
+    /// The perceptual roughness of the larger width, √α.
+    pub fn perceptual(self) -> PerceptualRoughness {
+        PerceptualRoughness(self.major().sqrt())
+    }
+
     /// λ = smaller / larger ∈ (0, 1].
     pub fn ratio(self) -> f64 {
         self.x.min(self.y) / self.major()
@@ -94,6 +99,7 @@ mod tests {
         assert_eq!((alpha.x(), alpha.y()), (0.25, 0.25));
         let full = Alpha::from_perceptual(r, 1.0).unwrap();
         assert_eq!((full.x(), full.y()), (1.0, 0.25));
+        assert_eq!((alpha.perceptual(), full.perceptual().get()), (r, 1.0));
     }
 
     #[test]

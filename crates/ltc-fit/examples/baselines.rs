@@ -64,7 +64,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let tables = arguments.next().unwrap_or_else(|| "tables".to_owned());
     let published = arguments.next();
     let catalogue = Catalogue::read_folder(Path::new(&tables))?;
-    println!("{:24} {:36} {:>7} {:>7} {:>7} {:>7} {:>7}", "draw", "table", "mean", "p95", "max", "α<.14", "α≥.14");
+    println!(
+        "{:24} {:36} {:>7} {:>7} {:>7} {:>7} {:>7}",
+        "draw", "table", "mean", "p95", "max", "α<.14", "α≥.14"
+    );
     for draw in draws() {
         report(&draw, "least of any single LTC", &measure::optimum(&GgxFamily, &draw.queries, SAMPLES)?);
         let shipped: &[(&str, Layout)] = if draw.isotropic {
@@ -85,7 +88,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn report(draw: &Draw, table: &str, tv: &[f64]) {
-    let settings = measure::MeasureSettings { queries: 0, samples: SAMPLES, seed: 77, layout: Layout::Matrix };
+    let settings =
+        measure::MeasureSettings { queries: 0, samples: SAMPLES, seed: 77, layout: Layout::Matrix };
     let e: DrawErrors = measure::draw_errors(&draw.queries, tv, settings, draw.isotropic);
     let (narrow, wide) = (e.tv_mean_alpha_below_0_14, e.tv_mean_alpha_from_0_14);
     println!(
@@ -120,7 +124,8 @@ impl Published {
         let numbers = &file[file.len() - 4096 * 9 * 4..];
         let values: Vec<f64> =
             numbers.as_chunks().0.iter().map(|b| f64::from(f32::from_le_bytes(*b))).collect();
-        let m = values.as_chunks::<9>().0.iter().map(|rows| DMat3::from_cols_array(rows).transpose()).collect();
+        let m =
+            values.as_chunks::<9>().0.iter().map(|rows| DMat3::from_cols_array(rows).transpose()).collect();
         Self { axes, m }
     }
 

@@ -35,7 +35,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cases = cases()?;
     let bright = cases.iter().map(|c| c.truth).sum::<f64>() / LIGHTS as f64;
     println!("{LIGHTS} lights, mean fraction {bright:.3}");
-    println!("{:34} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9}", "", "RMSE", "mean", "p95", "max", "signed", "relative");
+    println!(
+        "{:34} {:>8} {:>8} {:>8} {:>8} {:>9} {:>9}",
+        "", "RMSE", "mean", "p95", "max", "signed", "relative"
+    );
     if let Some(folder) = published {
         let read = |file: &str| std::fs::read(Path::new(&folder).join("ltc_code").join(file));
         let textures = Reader::DropIn(Box::new(DropIn::read_dds(&read("ltc_1.dds")?, &read("ltc_2.dds")?)?));

@@ -5,7 +5,7 @@ use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 use ltc_core::{Alpha, Vector, schlick_weight};
 
-use crate::{DiskPoints, lobe::lambda_cos};
+use crate::{DiskPoints, brdf::lambda_cos};
 
 /// A point of the unit disk with its share of the disk's area.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,7 +7,8 @@ pub const MAX_DIMENSION: usize = 7;
 pub type Point = [f64; MAX_DIMENSION];
 
 /// Why the minimiser stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Stop {
     /// No step along the descent direction lowers the value any more.
     Converged,

@@ -49,9 +49,10 @@ pub fn fit_channels(
     let solve = |start: &[f64], value: fn(&Row) -> f64| tied(lattice, &least_squares(start, &rows, value));
     let (mut magnitude, mut fresnel) =
         rayon::join(|| solve(&magnitude, |r| r.magnitude), || solve(&fresnel, |r| r.fresnel));
-    // No surface reflects more than it gets, and a Fresnel weight is at most 1: least squares alone may say otherwise.
+    // No surface reflects more than it gets (or its model lets it), and a Fresnel weight is at most 1: least squares alone
+    // may say otherwise.
     for (n, f) in magnitude.iter_mut().zip(&mut fresnel) {
-        *n = n.clamp(0.0, 1.0);
+        *n = n.clamp(0.0, brdf.max_magnitude());
         *f = f.clamp(0.0, *n);
     }
     report(observer, 3)?;

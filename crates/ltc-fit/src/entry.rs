@@ -3,10 +3,11 @@
 use glam::{DMat3, DVec3};
 
 use crate::{
-    Lobe, Pattern,
-    bfgs::{Minimum, Point, Stop, minimise},
-    gauge, start,
-    tv::total_variation_gradient,
+    Lobe, Objective, Pattern,
+    bfgs::{self, Minimum, Point, Stop},
+    gauge, nelder_mead,
+    objective::{Goal, total_variation},
+    start,
 };
 
 /// An LTC fitted to one lobe.
@@ -16,8 +17,12 @@ pub struct EntryFit {
     pub m: DMat3,
     /// Total variation over the samples that were fitted.
     pub tv: f64,
+    /// The objective over these samples; total variation again if that was it.
+    pub value: f64,
     /// Iterations that it took.
     pub iterations: usize,
+    /// How often the lobe was compared with an LTC.
+    pub evaluations: usize,
     /// Why it stopped.
     pub stop: Stop,
 }
@@ -29,17 +34,51 @@ pub fn fit_entry(lobe: &Lobe, wo: DVec3, pattern: Pattern, max_iterations: usize
 
 /// The same, from a given start of the pattern.
 pub fn refine_entry(lobe: &Lobe, start: DMat3, pattern: Pattern, max_iterations: usize) -> EntryFit {
+    refine_by(&Objective::TotalVariation.towards(lobe), start, pattern, max_iterations)
+}
+
+/// Lowers any objective towards its lobe by BFGS, from a given start of the pattern with det > 0.
+pub fn refine_by(goal: &Goal<'_>, start: DMat3, pattern: Pattern, max_iterations: usize) -> EntryFit {
     let coordinates = CosineCoordinates { start, pattern };
-    let Minimum { point, value, iterations, stop } = minimise(
+    let mut evaluations = 0;
+    let minimum = bfgs::minimise(
         |point| {
-            let (value, by_m) = total_variation_gradient(lobe, coordinates.matrix(point));
-            (value, coordinates.gradient(point, by_m))
+            evaluations += 1;
+            let (value, by_m) = goal.value_and_gradient(coordinates.matrix(point));
+            (value / goal.unit(), coordinates.gradient(point, by_m * (1.0 / goal.unit())))
         },
         max_iterations,
     );
-    let m =
-        gauge::signed(pattern.project(gauge::scaled(gauge::aligned(coordinates.matrix(&point)))), pattern);
-    EntryFit { m, tv: value, iterations, stop }
+    coordinates.fit(goal, minimum, evaluations)
+}
+
+/// Edge of the first simplex of [`refine_by_simplex`], relative to the lobe's width.
+const SIMPLEX: f64 = 0.1;
+
+/// The same by Nelder and Mead's simplex, without gradients.
+pub fn refine_by_simplex(goal: &Goal<'_>, start: DMat3, pattern: Pattern, max_iterations: usize) -> EntryFit {
+    let coordinates = CosineCoordinates { start, pattern };
+    let free = pattern.free();
+    let spread = |p: &Point| {
+        let mut point = Point::default();
+        free.iter().zip(p).for_each(|(i, x)| point[*i] = *x);
+        if pattern == Pattern::Round {
+            point[1] = point[0];
+        }
+        point
+    };
+    let mut evaluations = 0;
+    let minimum = nelder_mead::minimise(
+        |p| {
+            evaluations += 1;
+            goal.value(coordinates.matrix(&spread(p))) / goal.unit()
+        },
+        &Point::default(),
+        free.len(),
+        SIMPLEX,
+        max_iterations,
+    );
+    coordinates.fit(goal, Minimum { point: spread(&minimum.point), ..minimum }, evaluations)
 }
 
 /// The seven degrees of freedom of a lobe around a start `M₀`: `M = M₀ [[eᵃ, s, x], [s, eᵇ, y], [p, q, 1]]`.
@@ -60,6 +99,16 @@ impl CosineCoordinates {
             )
     }
 
+    /// The fit that a minimum in these coordinates is.
+    fn fit(&self, goal: &Goal<'_>, minimum: Minimum, evaluations: usize) -> EntryFit {
+        let Minimum { point, value, iterations, stop } = minimum;
+        let found = gauge::right_handed(self.matrix(&point));
+        let m = gauge::signed(self.pattern.project(gauge::scaled(gauge::aligned(found))), self.pattern);
+        let value = value * goal.unit();
+        let tv = if goal.is_total_variation() { value } else { total_variation(goal.lobe(), m) };
+        EntryFit { m, tv, value, iterations, evaluations, stop }
+    }
+
     fn gradient(&self, [a, b, ..]: &Point, by_m: DMat3) -> Point {
         let g = self.start.transpose() * by_m;
         let full = [
@@ -76,6 +125,18 @@ impl CosineCoordinates {
 }
 
 impl Pattern {
+    /// The [`CosineCoordinates`] that a start of the pattern can be changed along without leaving it; the two widths of a
+    /// round lobe are one.
+    fn free(self) -> &'static [usize] {
+        match self {
+            Self::General => &[0, 1, 2, 3, 4, 5, 6],
+            Self::MirrorY => &[0, 1, 3, 5],
+            Self::MirrorX => &[0, 1, 4, 6],
+            Self::Diagonal => &[0, 1],
+            Self::Round => &[0],
+        }
+    }
+
     /// A gradient in [`CosineCoordinates`] whose start is of the pattern, without what would leave it.
     fn restrict(self, [a, b, s, x, y, p, q]: Point) -> Point {
         match self {

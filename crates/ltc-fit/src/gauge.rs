@@ -56,7 +56,7 @@ pub fn smooth(axes: &[Axis], lattice: &Lattice, m: &mut [DMat3]) {
 }
 
 /// The entries one step away along each axis.
-fn neighbours(axes: &[Axis], index: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn neighbours(axes: &[Axis], index: usize) -> impl Iterator<Item = usize> {
     let mut stride = 1;
     let mut found = Vec::with_capacity(2 * axes.len());
     for axis in axes.iter().rev() {
@@ -95,6 +95,11 @@ pub fn signed(m: DMat3, pattern: Pattern) -> DMat3 {
         Pattern::MirrorX | Pattern::Diagonal | Pattern::Round => m.x_axis.x,
     };
     if across < 0.0 { DMat3::from_cols(-m.x_axis, -m.y_axis, m.z_axis) } else { m }
+}
+
+/// `M` or `M diag(1, −1, 1)`, whichever has det M > 0: the lobe is the same (2022 paper, eq. 11).
+pub fn right_handed(m: DMat3) -> DMat3 {
+    if m.determinant() < 0.0 { DMat3::from_cols(m.x_axis, -m.y_axis, m.z_axis) } else { m }
 }
 
 /// `M` scaled so that its last column has unit length (2022 paper, §7).

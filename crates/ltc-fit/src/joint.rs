@@ -9,8 +9,8 @@ use ltc_table::{
 use rayon::prelude::*;
 
 use crate::{
-    Brdf, DiskPoints, FitError, Lattice, Layout, Lobe, Observer, Progress, draw, regular,
-    tv::total_variation_gradient,
+    Brdf, DiskPoints, FitError, Lattice, Layout, Lobe, Observer, Progress, draw, progress::JOINT, regular,
+    total_variation_gradient,
 };
 
 /// Settings of [`refine`].
@@ -54,12 +54,96 @@ pub fn refine(
     settings: JointSettings,
     observer: Observer<'_>,
 ) -> Result<Vec<DMat3>, FitError> {
-    let mut unknowns = Unknowns::new(lattice, start);
-    let mut rng = SplitMix64::new(settings.seed);
-    let isotropic = axes.len() == 2;
-    let mut average = RunningMean::default();
-    for step in 0..settings.steps {
-        let queries = draw::training(&mut rng, settings.queries, isotropic);
+    let mut refinement = Refinement::new(brdf, axes, lattice, start.to_vec(), settings);
+    while !refinement.is_done() {
+        if !observer(refinement.step()?) {
+            return Err(FitError::Stopped);
+        }
+    }
+    Ok(refinement.finish())
+}
+
+/// What a [`Refinement`] knows between two steps: with it and the start, it goes on as if it had never stopped.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointState {
+    /// Steps done.
+    pub steps: usize,
+    /// Seed of the queries still to come.
+    pub seed: u64,
+    /// `Δ` of each entry that owns itself, column-major.
+    pub delta: Vec<[f64; 9]>,
+    /// Adam's mean of its gradients.
+    pub mean: Vec<[f64; 9]>,
+    /// Adam's mean of their squares.
+    pub square: Vec<[f64; 9]>,
+    /// The running mean of the total variation, and its weight.
+    pub average: [f64; 2],
+}
+
+/// [`refine`], step by step.
+pub struct Refinement<'a> {
+    brdf: &'a dyn Brdf,
+    axes: &'a [Axis],
+    settings: JointSettings,
+    unknowns: Unknowns<'a>,
+    rng: SplitMix64,
+    average: RunningMean,
+    steps: usize,
+}
+
+impl<'a> Refinement<'a> {
+    /// Before the first step.
+    pub fn new(
+        brdf: &'a dyn Brdf,
+        axes: &'a [Axis],
+        lattice: &'a Lattice,
+        start: Vec<DMat3>,
+        settings: JointSettings,
+    ) -> Self {
+        let (unknowns, rng) = (Unknowns::new(lattice, start), SplitMix64::new(settings.seed));
+        Self { brdf, axes, settings, unknowns, rng, average: RunningMean::default(), steps: 0 }
+    }
+
+    /// What it knows.
+    pub fn state(&self) -> JointState {
+        let Unknowns { delta, mean, square, .. } = &self.unknowns;
+        let [delta, mean, square] = [delta, mean, square].map(Clone::clone);
+        let average = [self.average.value, self.average.weight];
+        JointState { steps: self.steps, seed: self.rng.seed(), delta, mean, square, average }
+    }
+
+    /// Goes on from a state of a refinement with the same start and settings; `false`, and nothing happens, when it is
+    /// of another lattice.
+    pub fn resume(&mut self, state: &JointState) -> bool {
+        let owners = self.unknowns.owners.len();
+        let fits = [&state.delta, &state.mean, &state.square].iter().all(|values| values.len() == owners);
+        if !fits || state.steps > self.settings.steps {
+            return false;
+        }
+        self.unknowns.delta.clone_from(&state.delta);
+        self.unknowns.mean.clone_from(&state.mean);
+        self.unknowns.square.clone_from(&state.square);
+        self.unknowns.steps = state.steps as i32;
+        self.rng = SplitMix64::new(state.seed);
+        self.average = RunningMean { value: state.average[0], weight: state.average[1] };
+        self.steps = state.steps;
+        true
+    }
+
+    /// Whether no step is left.
+    pub fn is_done(&self) -> bool {
+        self.steps >= self.settings.steps
+    }
+
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// None for valid axes and settings.
+    pub fn step(&mut self) -> Result<Progress, FitError> {
+        let Self { brdf, axes, settings, unknowns, rng, average, steps } = self;
+        let isotropic = axes.len() == 2;
+        let queries = draw::training(rng, settings.queries, isotropic);
         let points = DiskPoints::new(settings.samples, [rng.unit(), rng.unit()]);
         let m = unknowns.matrices();
         let layout = settings.layout;
@@ -67,7 +151,9 @@ pub fn refine(
         let gradients: Result<Vec<_>, FitError> = queries
             .par_iter()
             .with_min_len(16)
-            .map_init(Lobe::default, |lobe, query| query_gradient(brdf, axes, layout, &stored, query, &points, lobe))
+            .map_init(Lobe::default, |lobe, query| {
+                query_gradient(*brdf, axes, layout, &stored, query, &points, lobe)
+            })
             .collect();
         let mut by_entry = vec![DMat3::ZERO; m.len()];
         for (place, value, gradient) in gradients? {
@@ -82,21 +168,19 @@ pub fn refine(
         if layout.is_matrix() {
             regular::push_apart(axes, &m, rng.bits(), 1.0 / settings.queries as f64, &mut by_entry);
         }
-        let progress = step as f64 / settings.steps as f64;
+        let progress = *steps as f64 / settings.steps as f64;
         let rate = settings.learning_rate * 0.5 * (1.0 + (core::f64::consts::PI * progress).cos());
         unknowns.step(&by_entry, rate);
-        let report = Progress {
-            stage: "joint refinement",
-            done: step + 1,
-            total: settings.steps,
-            tv: Some(average.value()),
-        };
-        if !observer(report) {
-            return Err(FitError::Stopped);
-        }
+        *steps += 1;
+        let tv = Some(average.value());
+        Ok(Progress { stage: JOINT, done: *steps, total: settings.steps, tv })
     }
-    unknowns.keep_exportable(settings.layout);
-    Ok(unknowns.matrices())
+
+    /// The refined matrices.
+    pub fn finish(mut self) -> Vec<DMat3> {
+        self.unknowns.keep_exportable(self.settings.layout);
+        self.unknowns.matrices()
+    }
 }
 
 fn query_gradient(
@@ -147,7 +231,7 @@ pub(crate) fn query_corners(axes: &[Axis], query: &Folded) -> Vec<Corner> {
 struct Unknowns<'a> {
     lattice: &'a Lattice,
     owners: Vec<usize>,
-    start: &'a [DMat3],
+    start: Vec<DMat3>,
     delta: Vec<[f64; 9]>,
     mean: Vec<[f64; 9]>,
     square: Vec<[f64; 9]>,
@@ -155,7 +239,7 @@ struct Unknowns<'a> {
 }
 
 impl<'a> Unknowns<'a> {
-    fn new(lattice: &'a Lattice, start: &'a [DMat3]) -> Self {
+    fn new(lattice: &'a Lattice, start: Vec<DMat3>) -> Self {
         let owners = lattice.owners();
         let zero = vec![[0.0; 9]; owners.len()];
         Self { lattice, owners, start, delta: zero.clone(), mean: zero.clone(), square: zero, steps: 0 }

@@ -111,7 +111,8 @@ mod tests {
         let weights = [0.3, 0.7];
         let by_m = DMat3::from_cols_array(&[0.3, 0.0, -0.2, 0.0, 0.5, 0.0, 0.7, 0.0, 0.4]);
         for layout in [Layout::Matrix, Layout::DropIn] {
-            let between = |m: &[DMat3; 2]| layout.stored(m[0]) * weights[0] + layout.stored(m[1]) * weights[1];
+            let between =
+                |m: &[DMat3; 2]| layout.stored(m[0]) * weights[0] + layout.stored(m[1]) * weights[1];
             let value = |m: &[DMat3; 2]| dot(layout.matrix(between(m)), by_m);
             let by_stored = layout.by_stored(layout.matrix(between(&entries)), by_m);
             for (i, weight) in weights.into_iter().enumerate() {
@@ -124,7 +125,10 @@ mod tests {
                     };
                     let quotient = (step(1e-6) - step(-1e-6)) / 2e-6;
                     let found = gradient.col(column)[row];
-                    assert!((quotient - found).abs() < 1e-6, "{layout:?} {i} {column}{row}: {quotient} {found}");
+                    assert!(
+                        (quotient - found).abs() < 1e-6,
+                        "{layout:?} {i} {column}{row}: {quotient} {found}"
+                    );
                 }
             }
         }

@@ -3,43 +3,67 @@
 //! [`fit`] takes a [`FitSpec`] through four stages: every entry by itself from the medians of its lobe
 //! ([`entries`]), all entries together over random queries between them ([`joint`]), magnitude and Fresnel
 //! ([`channels`]), and the statistics over queries that no stage has seen ([`measure`]).
+//!
+//! It does so piece by piece ([`FitRun`]): between any two pieces its state can be written down, and the fit goes on from
+//! it in another process ([`checkpoint`]) to the very same table. Specifications are read from TOML ([`spec_file`]).
 
 use glam::DVec3;
 
 mod albedo;
 mod bfgs;
+pub mod brdf;
 pub mod channels;
+pub mod checkpoint;
+pub mod diff;
 pub mod draw;
 pub mod entries;
 mod entry;
 mod error;
 mod fit;
+mod forecast;
+pub mod form;
 pub mod gauge;
+pub mod grid_errors;
 pub mod joint;
 mod layout;
 mod lobe;
 pub mod measure;
+mod nelder_mead;
+pub mod objective;
+mod optimiser;
+pub mod path;
+mod plan;
 mod points;
-mod progress;
+pub mod progress;
 mod regular;
+pub mod report;
+mod run;
 mod spec;
+pub mod spec_file;
 mod start;
 mod symmetry;
-mod tv;
+mod verify;
 
 pub use albedo::{DiskNode, DiskRule};
-pub use bfgs::Stop;
-pub use entry::{EntryFit, fit_entry, refine_entry};
+pub use bfgs::{Point, Stop};
+pub use brdf::{Beckmann, Brdf, CharlieSheen, DisneyDiffuse, GgxFamily, OrenNayar};
+pub use entry::{EntryFit, fit_entry, refine_by, refine_by_simplex, refine_entry};
 pub use error::FitError;
-pub use fit::{Verification, fit, publish, verify};
+pub use fit::{fit, fit_with, publish, publish_with};
+pub use forecast::{Forecast, Outlook};
 pub use layout::{Layout, Reader};
-pub use lobe::{Brdf, GgxFamily, Lobe};
+pub use lobe::Lobe;
+pub use objective::{Goal, Objective, total_variation, total_variation_gradient};
+pub use optimiser::Optimiser;
+pub use plan::{Cost, Limits, Plan};
 pub use points::DiskPoints;
 pub use progress::{Observer, Progress, silent};
+pub use report::FitReport;
+pub use run::{EntryRecord, FitRun, FitState, Fitted, StageTime};
 pub use spec::FitSpec;
 pub use start::median_start;
 pub use symmetry::{Lattice, Node, Pattern, Tie};
-pub use tv::{total_variation, total_variation_gradient};
+pub use verify::{Verification, refit_digest, refit_plan, verify, verify_with};
 
 /// The unit direction of polar angle `theta` and azimuth `phi`.
 pub fn direction(theta: f64, phi: f64) -> DVec3 {

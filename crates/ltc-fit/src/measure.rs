@@ -6,7 +6,8 @@ use ltc_table::{CellStats, DrawErrors, Errors, Floors, Kind, Lookup, Query, Tabl
 use rayon::prelude::*;
 
 use crate::{
-    Brdf, DiskPoints, DiskRule, EntryFit, FitError, Lattice, Layout, Lobe, Pattern, Reader, draw, fit_entry, total_variation,
+    Brdf, DiskPoints, DiskRule, EntryFit, FitError, Lattice, Layout, Lobe, Pattern, Reader, draw, fit_entry,
+    total_variation,
 };
 
 /// How the errors of a table are sampled.
@@ -25,7 +26,7 @@ pub struct MeasureSettings {
 }
 
 /// Where the samples of a measurement start; fits start elsewhere or at random.
-const MEASURE_SHIFT: [f64; 2] = [0.37, 0.71];
+pub(crate) const MEASURE_SHIFT: [f64; 2] = [0.37, 0.71];
 
 /// Statistics of every entry, at its own node.
 ///
@@ -79,6 +80,7 @@ pub fn errors(
         magnitude_max: maximum(&magnitude),
         fresnel_mean: mean(&fresnel),
         fresnel_max: maximum(&fresnel),
+        grid: None,
     })
 }
 
@@ -216,15 +218,15 @@ pub fn condition(m: DMat3) -> f64 {
     largest / smallest.max(f64::MIN_POSITIVE)
 }
 
-fn mean(values: &[f64]) -> f64 {
+pub(crate) fn mean(values: &[f64]) -> f64 {
     if values.is_empty() { 0.0 } else { values.iter().sum::<f64>() / values.len() as f64 }
 }
 
-fn maximum(values: &[f64]) -> f64 {
+pub(crate) fn maximum(values: &[f64]) -> f64 {
     values.iter().copied().fold(0.0, f64::max)
 }
 
-fn quantile(sorted: &[f64], q: f64) -> f64 {
+pub(crate) fn quantile(sorted: &[f64], q: f64) -> f64 {
     let index = (q * sorted.len().saturating_sub(1) as f64).round() as usize;
     sorted.get(index).copied().unwrap_or(0.0)
 }

@@ -1,5 +1,17 @@
 //! What a running fit tells, and how it is told to stop.
 
+/// The stage of [`crate::entries`].
+pub const ENTRIES: &str = "entries";
+/// The stage of [`crate::joint`].
+pub const JOINT: &str = "joint refinement";
+/// The stage of [`crate::channels`].
+pub const CHANNELS: &str = "magnitude and Fresnel";
+/// The stage of [`crate::measure`].
+pub const MEASUREMENT: &str = "measurement";
+
+/// The stage of [`crate::report`].
+pub const REPORT: &str = "report";
+
 /// A report from a running fit.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {

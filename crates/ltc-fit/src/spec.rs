@@ -6,8 +6,8 @@ use ltc_table::{Axis, Floors, Mapping, Quantity, check_name};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Brdf, FitError, GgxFamily, Layout, channels::ChannelSettings, entries::EntrySettings, joint::JointSettings,
-    measure::MeasureSettings,
+    Brdf, FitError, GgxFamily, Layout, Objective, brdf, channels::ChannelSettings, entries::EntrySettings,
+    joint::JointSettings, measure::MeasureSettings,
 };
 
 /// A fit, fully specified: the same specification gives the same digest, whatever the number of threads.
@@ -16,13 +16,14 @@ use crate::{
 pub struct FitSpec {
     /// Name of the table.
     pub name: String,
-    /// Name of the BRDF: `ggx`.
+    /// Name of the BRDF: one of [`brdf::names`], or of one's own ([`crate::fit_with`]).
     pub brdf: String,
     /// The table's axes: θ, α (isotropic) or θ, φ, α, λ.
     pub axes: Vec<Axis>,
     /// Smallest values that entries are fitted at.
     pub floors: Floors,
-    /// What is minimised: `total_variation`.
+    /// What is minimised: `total_variation`, `sliced_wasserstein`, `l3` or `kl`. Only the first is refined jointly; the others
+    /// need `joint.steps = 0`.
     pub objective: String,
     /// Each entry by itself.
     pub entries: EntrySettings,
@@ -36,13 +37,25 @@ pub struct FitSpec {
 
 impl FitSpec {
     /// Names of the presets.
-    pub const PRESETS: [&'static str; 3] = ["ggx-isotropic", "ggx-anisotropic", "ggx-isotropic-dropin"];
+    pub const PRESETS: [&'static str; 8] = [
+        "ggx-isotropic",
+        "ggx-anisotropic",
+        "ggx-isotropic-dropin",
+        "beckmann-isotropic",
+        "beckmann-anisotropic",
+        "disney-diffuse",
+        "oren-nayar",
+        "charlie-sheen",
+    ];
 
     /// A specification by name.
     ///
     /// # Errors
     /// [`FitError::NoSuchPreset`].
     pub fn preset(name: &str) -> Result<Self, FitError> {
+        if let Some(spec) = brdf::preset(name) {
+            return Ok(spec);
+        }
         let layout = if name == "ggx-isotropic-dropin" { Layout::DropIn } else { Layout::Matrix };
         let (axes, steps, learning_rate, channel_queries) = match name {
             "ggx-isotropic" | "ggx-isotropic-dropin" => {
@@ -60,7 +73,7 @@ impl FitSpec {
             axes,
             floors: Floors { alpha: 1e-3, lambda: 0.03, theta_max: 89.5_f64.to_radians() },
             objective: "total_variation".to_owned(),
-            entries: EntrySettings { samples: 512, iterations: 100 },
+            entries: EntrySettings::new(512, 100),
             joint: JointSettings { steps, queries: 2048, samples: 256, learning_rate, seed: 3, layout },
             channels: ChannelSettings { samples: 2048, queries: channel_queries, seed: 5 },
             measure: MeasureSettings { queries: 3000, samples: 4096, seed: 77, layout },
@@ -72,14 +85,10 @@ impl FitSpec {
     /// # Errors
     /// [`FitError::Spec`] for an unknown name.
     pub fn brdf(&self) -> Result<&'static dyn Brdf, FitError> {
-        if self.brdf == GgxFamily.name() {
-            Ok(&GgxFamily)
-        } else {
-            Err(FitError::Spec {
-                field: "brdf",
-                reason: format!("\"{}\" is not known; there is: ggx", self.brdf),
-            })
-        }
+        brdf::by_name(&self.brdf).ok_or_else(|| FitError::Spec {
+            field: "brdf",
+            reason: format!("\"{}\" is not known; there are: {}", self.brdf, brdf::names()),
+        })
     }
 
     /// Checks every field.
@@ -87,20 +96,32 @@ impl FitSpec {
     /// # Errors
     /// [`FitError::Spec`], naming the field and what is wrong with it.
     pub fn validate(&self) -> Result<(), FitError> {
+        self.brdf()?;
+        self.validate_settings()
+    }
+
+    /// Checks every field, and that the BRDF is `brdf`.
+    ///
+    /// # Errors
+    /// [`FitError::Spec`], naming the field and what is wrong with it.
+    pub fn validate_with(&self, brdf: &dyn Brdf) -> Result<(), FitError> {
+        if self.brdf != brdf.name() {
+            let reason = format!("is \"{}\", the BRDF's name is \"{}\"", self.brdf, brdf.name());
+            return Err(FitError::Spec { field: "brdf", reason });
+        }
+        self.validate_settings()
+    }
+
+    fn validate_settings(&self) -> Result<(), FitError> {
         use Quantity::{Alpha, Lambda, Phi, Theta};
         let wrong = |field, reason: String| Err(FitError::Spec { field, reason });
         check_name(&self.name).or_else(|e| wrong("name", e.to_string()))?;
-        self.brdf()?;
-        if self.objective != "total_variation" {
-            return wrong(
-                "objective",
-                format!("\"{}\" is not known; there is: total_variation", self.objective),
-            );
-        }
-        for axis in &self.axes {
-            axis.validate().or_else(|e| wrong("axes", e.to_string()))?;
+        self.validate_method()?;
+        const AXES: [&str; 4] = ["axes[0]", "axes[1]", "axes[2]", "axes[3]"];
+        for (axis, field) in self.axes.iter().zip(AXES) {
+            axis.validate().or_else(|e| wrong(field, e.to_string()))?;
             if axis.quantity == Phi && axis.domain != [0.0, FRAC_PI_2] {
-                return wrong("axes", "phi must span [0, π/2]: the symmetries tie its ends".to_owned());
+                return wrong(field, "phi must span [0, π/2]: the symmetries tie its ends".to_owned());
             }
         }
         let quantities: Vec<_> = self.axes.iter().map(|a| a.quantity).collect();
@@ -110,7 +131,58 @@ impl FitSpec {
                 "must be theta, alpha or theta, phi, alpha, lambda in this order".to_owned(),
             );
         }
+        /// An array of matrices of more bytes than this is refused when the table is read.
+        const MAX_NODES: u64 = (1 << 30) / 72;
+        let nodes = self.axes.iter().fold(1_u64, |n, axis| n.saturating_mul(axis.len as u64));
+        if nodes > MAX_NODES {
+            return wrong("axes", format!("have {nodes} nodes in all, must have at most {MAX_NODES}"));
+        }
+        self.validate_layout()?;
         self.validate_numbers()
+    }
+
+    fn validate_layout(&self) -> Result<(), FitError> {
+        let wrong = |field, reason: &str| Err(FitError::Spec { field, reason: reason.to_owned() });
+        if self.measure.layout != self.joint.layout {
+            return wrong("measure.layout", "must be joint.layout: what is fitted is what is read");
+        }
+        let drop_in = self.axes == ltc_table::drop_in::axes(self.axes[0].len);
+        if self.joint.layout == Layout::DropIn && !drop_in {
+            let reason = "of the layout drop_in must be theta (sqrt_one_minus_cos) and alpha (sqrt) over their whole ranges, as many \
+                          nodes each";
+            return wrong("axes", reason);
+        }
+        Ok(())
+    }
+
+    /// The objective of that name.
+    ///
+    /// # Errors
+    /// [`FitError::Spec`] for an unknown name.
+    pub fn objective(&self) -> Result<Objective, FitError> {
+        Objective::by_name(&self.objective)
+    }
+
+    fn validate_method(&self) -> Result<(), FitError> {
+        let wrong = |field, reason: String| Err(FitError::Spec { field, reason });
+        let objective = self.objective()?;
+        if objective != Objective::TotalVariation && self.joint.steps > 0 {
+            let reason = match objective {
+                Objective::SlicedWasserstein => "it would take a sort for each axis of each query",
+                Objective::L3 => "its mean over lobes of all widths would be that of the narrowest",
+                _ => "where it is infinite it is a floor that would be refined",
+            };
+            let name = objective.name();
+            return wrong(
+                "objective",
+                format!("{name} is not refined jointly ({reason}): set joint.steps to 0"),
+            );
+        }
+        if self.entries.optimiser.form().is_some() && self.axes.len() != 2 {
+            let name = self.entries.optimiser.name();
+            return wrong("entries.optimiser", format!("{name} fits isotropic tables (theta, alpha) only"));
+        }
+        Ok(())
     }
 
     fn validate_numbers(&self) -> Result<(), FitError> {
@@ -169,6 +241,7 @@ fn anisotropic_axes() -> Vec<Axis> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Optimiser;
 
     #[test]
     fn presets_are_valid() {
@@ -187,10 +260,23 @@ mod tests {
         };
         assert!(broken(|s| s.name = "../x".into()).starts_with("name:"));
         assert!(broken(|s| s.brdf = "phong".into()).starts_with("brdf:"));
+        assert!(
+            broken(|s| s.objective = "l2".into()).starts_with("objective: \"l2\" is not known; there are:")
+        );
+        assert!(broken(|s| s.objective = "l3".into()).starts_with("objective: l3 is not refined jointly"));
+        assert!(
+            broken(|s| s.entries.optimiser = Optimiser::NelderMeadFour).starts_with("entries.optimiser: ")
+        );
         assert!(broken(|s| s.floors.alpha = f64::NAN).starts_with("floors.alpha:"));
         assert!(broken(|s| s.joint.samples = 1).starts_with("joint.samples:"));
         assert!(broken(|s| s.measure.seed = s.joint.seed).starts_with("measure.seed:"));
         assert!(broken(|s| s.axes.swap(0, 1)).starts_with("axes:"));
-        assert!(broken(|s| s.axes[1].domain = [0.1, 1.0]).starts_with("axes:"));
+        assert!(
+            broken(|s| s.axes.iter_mut().for_each(|a| a.len = 4096)).starts_with("axes: have 2814749767")
+        );
+        assert!(broken(|s| s.axes[1].domain = [0.1, 1.0]).starts_with("axes[1]:"));
+        assert!(broken(|s| s.measure.layout = Layout::DropIn).starts_with("measure.layout:"));
+        let drop_in = broken(|s| (s.joint.layout, s.measure.layout) = (Layout::DropIn, Layout::DropIn));
+        assert!(drop_in.starts_with("axes: of the layout drop_in"), "{drop_in}");
     }
 }

@@ -44,7 +44,7 @@ impl<F: Fn(DVec3) -> f64> Lobe for F {
 }
 
 /// The directions that `sample` makes of a fixed set of points.
-fn hints_from(sample: impl Fn([f64; 2]) -> Option<DVec3>) -> Vec<DVec3> {
+pub(crate) fn hints_from(sample: impl Fn([f64; 2]) -> Option<DVec3>) -> Vec<DVec3> {
     let points = R2::new();
     (0..HINTS).filter_map(|i| sample(points.point(i))).collect()
 }

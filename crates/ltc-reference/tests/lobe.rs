@@ -4,8 +4,8 @@ mod common;
 
 use glam::{DMat3, DVec3};
 use ltc_reference::{
-    AboveHorizon, CosineLobe, Lobe, LtcLobe, LtcMixture, ReferenceError, Scaled, SplitMix64, Tolerance,
-    integrate_sphere, lobe_mass, sphere_direction,
+    AboveHorizon, BaseShape, CosineLobe, Lobe, LtcLobe, LtcMixture, ReferenceError, Scaled, SplitMix64,
+    Tolerance, TransformedLobe, integrate_sphere, lobe_mass, sphere_direction,
 };
 
 fn mass(lobe: &impl Lobe) -> f64 {
@@ -150,4 +150,26 @@ fn singular_and_non_finite_matrices_are_errors() {
     assert!(matches!(LtcLobe::new(flat), Err(ReferenceError::SingularMatrix { .. })));
     let nan = DMat3::from_diagonal(DVec3::new(1.0, f64::NAN, 1.0));
     assert!(matches!(LtcLobe::new(nan), Err(ReferenceError::NonFiniteInput { .. })));
+}
+
+#[test]
+fn every_transformed_base_integrates_to_one_and_they_differ() {
+    let mut random = SplitMix64::new(7);
+    for condition in [1.0, 10.0, 300.0] {
+        let ltc = common::ltc(&mut random, condition);
+        let w = ltc.sample([0.3, 0.2]);
+        let mut densities = Vec::new();
+        for shape in BaseShape::ALL {
+            let lobe = TransformedLobe::new(shape, ltc.target_from_cosine()).unwrap();
+            let total = mass(&lobe);
+            assert!((total - 1.0).abs() < 1e-8, "{shape:?}, condition {condition}: {total}");
+            densities.push(lobe.density(w));
+        }
+        assert!((densities[2] / ltc.density(w) - 1.0).abs() < 1e-12, "the cosine is the LTC");
+        // cos² θ = 1 - 0.3 here, so that the densities are 1/4π, 1/2π, √0.7/π and 1.05/π times the same Jacobian.
+        let expected = [0.25, 0.5, 0.7f64.sqrt(), 1.05].map(|d| d / 0.25);
+        for (density, expected) in densities.iter().zip(expected) {
+            assert!((density / densities[0] / expected - 1.0).abs() < 1e-9, "{densities:?}");
+        }
+    }
 }

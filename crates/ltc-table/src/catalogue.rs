@@ -27,7 +27,8 @@ impl Catalogue {
         }
     }
 
-    /// Reads `NAME/VERSION/{manifest.json, table.npz}` below a folder. Folders without a manifest are passed over.
+    /// Reads `NAME/VERSION/{manifest.json, table.npz}` below a folder. Folders without a manifest and hidden ones, whose
+    /// names begin with a dot, are passed over.
     ///
     /// # Errors
     /// [`TableError::Io`] when the folder cannot be read; whatever is wrong with a version that is there.
@@ -115,7 +116,8 @@ fn subfolders(folder: &Path) -> Result<Vec<std::path::PathBuf>, TableError> {
     let mut paths = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(io)? {
         let path = entry.map_err(io)?.path();
-        if path.is_dir() {
+        let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        if path.is_dir() && !hidden {
             paths.push(path);
         }
     }
@@ -169,6 +171,8 @@ mod tests {
             version("a", n, isotropic()).write_folder(&folder.path().join(format!("a/{n}"))).unwrap();
         }
         std::fs::remove_file(folder.path().join("a/2").join(MANIFEST_FILE)).unwrap();
+        // What a kill left in the middle of publishing.
+        version("a", 3, isotropic()).write_folder(&folder.path().join("a/.3.tmp")).unwrap();
         let catalogue = Catalogue::read_folder(folder.path()).unwrap();
         assert_eq!(catalogue.versions("a").unwrap().count(), 1);
         assert!(Catalogue::read_folder(&folder.path().join("none")).is_err());

@@ -30,7 +30,7 @@ impl Part {
     /// under `"part"` which ranges were asked for. Its digest still names the version it is a part of.
     ///
     /// # Errors
-    /// [`TableError::Json`], which no manifest gives.
+    /// [`TableError::Manifest`], which no manifest gives.
     pub fn manifest(&self, version: &TableVersion, table: &Table) -> Result<String, TableError> {
         let mut manifest = serde_json::to_value(version.manifest())?;
         if !self.is_whole() {

@@ -20,6 +20,7 @@ mod manifest;
 pub mod npz;
 mod precision;
 mod query;
+mod shelf;
 mod table;
 #[cfg(test)]
 mod testing;
@@ -32,8 +33,9 @@ pub use crop::Part;
 pub use drop_in::DropIn;
 pub use error::TableError;
 pub use lookup::{Lobe, Lookup};
-pub use manifest::{BrdfInfo, ChannelInfo, DrawErrors, Errors, Floors, Manifest};
+pub use manifest::{BrdfInfo, ChannelInfo, DrawErrors, Errors, Floors, GridErrors, Manifest};
 pub use precision::Precision;
 pub use query::{Folded, Query};
+pub use shelf::{Added, add_version};
 pub use table::{CellStats, Kind, Table};
 pub use version::{MANIFEST_FILE, PAYLOAD_FILE, TableVersion, check_name};

@@ -95,6 +95,44 @@ pub struct Errors {
     pub fresnel_mean: f64,
     /// Its maximum.
     pub fresnel_max: f64,
+    /// Errors over the whole grid; tables fitted before there were any have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub grid: Option<GridErrors>,
+}
+
+/// Errors at every entry and at the centre of every cell between entries, up to the ends of the axes: the standard draw
+/// does not go there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GridErrors {
+    /// Mean of |magnitude − its integral| over the entries.
+    pub node_magnitude_mean: f64,
+    /// Mean of magnitude − its integral over the entries.
+    pub node_magnitude_bias: f64,
+    /// Largest |magnitude − its integral| of an entry.
+    pub node_magnitude_max: f64,
+    /// Mean of |Fresnel term − its integral| over the entries.
+    pub node_fresnel_mean: f64,
+    /// Mean of Fresnel term − its integral over the entries.
+    pub node_fresnel_bias: f64,
+    /// Largest |Fresnel term − its integral| of an entry.
+    pub node_fresnel_max: f64,
+    /// Mean total variation of lookups at the centres of cells.
+    pub centre_tv_mean: f64,
+    /// Its maximum.
+    pub centre_tv_max: f64,
+    /// Mean error of the interpolated magnitude at the centres of cells.
+    pub centre_magnitude_mean: f64,
+    /// Its maximum.
+    pub centre_magnitude_max: f64,
+    /// Mean error of the interpolated Fresnel term at the centres of cells.
+    pub centre_fresnel_mean: f64,
+    /// Its maximum.
+    pub centre_fresnel_max: f64,
+    /// Mean of `|M₁ − M₂| / (|M₁| + |M₂|)` (Frobenius) over entries beside each other: how smoothly matrices lie, with the
+    /// scale and turn that lobes do not show.
+    pub step_mean: f64,
+    /// Its maximum.
+    pub step_max: f64,
 }
 
 /// Total variation over the standard draw (see `ltc_fit::draw`).

@@ -25,6 +25,14 @@ pub fn isotropic() -> Table {
     ])
 }
 
+/// The isotropic table with another magnitude.
+pub fn scaled(factor: f64) -> Table {
+    let table = isotropic();
+    let magnitude = table.magnitude().iter().map(|n| factor * n).collect();
+    let (axes, m, fresnel) = (table.axes().to_vec(), table.m().to_vec(), table.fresnel().to_vec());
+    Table::new(axes, m, magnitude, fresnel, CellStats::default()).unwrap()
+}
+
 fn table(axes: Vec<Axis>) -> Table {
     let n: usize = axes.iter().map(|a| a.len).product();
     let entry = |i: usize| {
@@ -74,6 +82,7 @@ pub fn version(name: &str, number: u32, table: Table) -> TableVersion {
             magnitude_max: 0.0,
             fresnel_mean: 0.0,
             fresnel_max: 0.0,
+            grid: None,
         },
         created: "2026-01-01T00:00:00Z".into(),
         tool: "test".into(),

@@ -76,6 +76,13 @@ impl TableVersion {
         files::write_atomically(&folder.join(MANIFEST_FILE), self.manifest_json()?.as_bytes())
     }
 
+    /// The same table as another number.
+    #[must_use]
+    pub fn numbered(mut self, number: u32) -> Self {
+        self.manifest.version = number;
+        self
+    }
+
     /// What the version says about itself.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest

@@ -2,8 +2,6 @@
 
 use anyhow::Result;
 use clap::Args;
-use ltc_table::{Query, Table};
-use serde::Deserialize;
 
 use crate::{json_lines, tables::Tables};
 
@@ -23,26 +21,10 @@ pub struct Lookup {
     json: bool,
 }
 
-/// A query with nothing else beside it.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Line {
-    theta: f64,
-    #[serde(default)]
-    phi: f64,
-    alpha_x: f64,
-    alpha_y: f64,
-}
-
 impl Lookup {
     pub fn run(self, tables: &Tables) -> Result<()> {
         let catalogue = tables.catalogue()?;
         let table = catalogue.find(&self.table)?.table();
-        json_lines::run(|line| answer(table, line))
+        json_lines::run(|line| ltc_lines::lookup(table, line))
     }
-}
-
-fn answer(table: &Table, line: &str) -> Result<ltc_table::Lookup, String> {
-    let Line { theta, phi, alpha_x, alpha_y } = json_lines::object(line)?;
-    table.lookup(&Query { theta, phi, alpha_x, alpha_y }).map_err(|e| e.to_string())
 }

@@ -105,5 +105,25 @@ pub fn print_errors(m: &Manifest) -> Result<()> {
         e.leak_max,
         e.condition_max
     );
+    if let Some(g) = &e.grid {
+        outln!("whole grid, up to the ends of the axes:");
+        outln!("  half-way between entries: TV mean {:.4} max {:.4}", g.centre_tv_mean, g.centre_tv_max);
+        for (name, [mean, max], [own_mean, own_max]) in [
+            (
+                "magnitude:",
+                [g.centre_magnitude_mean, g.centre_magnitude_max],
+                [g.node_magnitude_mean, g.node_magnitude_max],
+            ),
+            (
+                "Fresnel:  ",
+                [g.centre_fresnel_mean, g.centre_fresnel_max],
+                [g.node_fresnel_mean, g.node_fresnel_max],
+            ),
+        ] {
+            outln!(
+                "  {name} mean {mean:.1e} max {max:.1e}, at the entries mean {own_mean:.1e} max {own_max:.1e}"
+            );
+        }
+    }
     Ok(())
 }

@@ -125,6 +125,63 @@ fn integrals_are_right_in_every_precision_and_place() {
     }
 }
 
+/// Every light of the manual, overhead or thin enough for a textbook form factor.
+#[test]
+fn every_light_has_its_form_factor() {
+    let (p0, p1) = ([-1e3, 0.0, 2.0], [1e3, 0.0, 2.0]);
+    let lights = [
+        (json!({ "type": "disk", "center": [0, 0, 2], "normal": [0, 0, -1], "radius": 1 }), 0.2),
+        (json!({ "type": "disk", "center": [0, 0, 2], "normal": [0, 0, 1], "radius": 1 }), 0.0),
+        (
+            json!({ "type": "disk", "center": [0, 0, 2], "normal": [0, 0, 1], "radius": 1, "two_sided": true }),
+            0.2,
+        ),
+        (json!({ "type": "ellipse", "center": [0, 0, 2], "axis_u": [0, 1, 0], "axis_v": [1, 0, 0] }), 0.2),
+        (json!({ "type": "ellipse", "center": [0, 0, 2], "axis_u": [1, 0, 0], "axis_v": [0, 1, 0] }), 0.0),
+        (json!({ "type": "sphere", "center": [0, 0, 2], "radius": 0.5 }), 0.0625),
+        (json!({ "type": "sphere", "center": [0, 0, 0.1], "radius": 0.5 }), 1.0),
+        // Of a long line overhead: radius over distance, for a wide one, too.
+        (json!({ "type": "line", "p0": p0, "p1": p1, "radius": 0.02 }), 0.01),
+        (json!({ "type": "strip", "p0": p0, "p1": p1, "width": 0.04, "normal": [0, 0, -1] }), 0.01),
+        (json!({ "type": "strip", "p0": p0, "p1": p1, "width": 0.04, "normal": [0, 0, 1] }), 0.0),
+        (json!({ "type": "cylinder", "p0": p0, "p1": p1, "radius": 1 }), 0.5),
+        (json!({ "type": "cylinder", "p0": [0, 0, 2], "p1": [0, 0, 3], "radius": 1, "caps": true }), 0.2),
+        (json!({ "type": "cylinder", "p0": [0, 0, 2], "p1": [0, 0, 3], "radius": 1, "caps": false }), 0.0),
+    ];
+    let lines: Vec<Value> = lights.iter().map(|(light, _)| json!({ "m": COSINE, "light": light })).collect();
+    for (precision, tolerance) in [("f64", 1e-6), ("f32", 3e-6)] {
+        let answers = integrate(&["--precision", precision], &lines);
+        assert_eq!(answers.len(), lines.len());
+        for (answer, (light, expected)) in answers.iter().zip(&lights) {
+            let value = answer["value"].as_f64().unwrap_or(f64::NAN);
+            assert!((value - expected).abs() < tolerance, "{light}: {answer}, not {expected}");
+            assert!(*expected > 0.0 || value == 0.0, "{light}: {answer}");
+        }
+    }
+}
+
+/// One that is none is told on its line, whatever its shape.
+#[test]
+fn bad_lights_of_every_shape_are_refused() {
+    let bad = [
+        (json!({ "type": "disk", "center": [0, 0, 2], "normal": [0, 0, 0], "radius": 1 }), "normal"),
+        (json!({ "type": "sphere", "center": [0, 0, 2], "radius": -1 }), "radius"),
+        (json!({ "type": "line", "p0": [0, 0, 1], "p1": [1, 0, 1], "radius": -1 }), "radius"),
+        (json!({ "type": "cylinder", "p0": [0, 0, 1], "p1": [1, 0, 1], "radius": -1 }), "radius"),
+        (
+            json!({ "type": "strip", "p0": [0, 0, 1], "p1": [1, 0, 1], "width": 1, "normal": [1, 0, 0] }),
+            "normal",
+        ),
+        (json!({ "type": "ellipse", "center": [0, 0, 2], "axis_u": [1, 0, 0] }), "axis_v"),
+    ];
+    let lines: Vec<Value> = bad.iter().map(|(light, _)| json!({ "m": COSINE, "light": light })).collect();
+    let answers = integrate(&[], &lines);
+    assert_eq!(answers.len(), bad.len());
+    for (answer, (light, word)) in answers.iter().zip(&bad) {
+        assert!(answer["error"].to_string().contains(word), "{light}: {answer}");
+    }
+}
+
 /// As the GPU tests of the workspace: a machine without any driver skips, a build server does not.
 fn has_gpu() -> bool {
     let run = ltc(&["integrate", "--backend", "gpu"]);

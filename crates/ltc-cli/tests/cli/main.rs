@@ -8,6 +8,8 @@ mod help;
 mod lines;
 mod render;
 #[cfg(unix)]
+mod resume;
+#[cfg(unix)]
 mod serve;
 mod support;
 mod tables;

@@ -1,13 +1,27 @@
 //! Polygonal lights: the fraction of a lobe that sees the polygon, in closed form.
 
-use super::boundary::{BoundarySum, clip_to_surface, fraction_from_boundary};
+use super::boundary::{BoundarySum, fraction_from_boundary, power_of_two_near_reciprocal, widen};
 use super::{Horizon, Light, Sides};
 use crate::{InputError, Ltc, Real, Vector};
+use glam::DVec3;
 
 /// A flat polygonal light, its vertices given relative to the shading point in the shading frame.
 ///
 /// Any simple polygon of three or more vertices, convex or not. Vertices run counter-clockwise seen from the emitting
 /// side. It emits the same radiance in all directions.
+///
+/// # Precision
+/// Both precisions compute in `f64`, where products of `f32` are exact; only the angles of an `f32` light are as short as
+/// its result (to 2.4e-9). Against the oracle `f64` is within 1e-9, mostly 1e-13. Against `f64` on the same inputs `f32` is
+/// within 2e-5, times cond(M)/100 where that is above 1, over scales of 1e±6, widths of lobes from 1e-4, 89.99° off the
+/// normal, aspects of 1e5, 1e-7 of the light's size off its plane, and 1e±3 of its size away (a tenth of that is measured;
+/// `tests/polygon_precision.rs`). Rounding the inputs to `f32` costs as much again, more at grazing angles, and near the
+/// light's plane all there is: it moves the point to the other side.
+///
+/// # Continuity
+/// A light that sinks below the surface goes out without a jump. A point that crosses the light's plane inside its outline
+/// sees half of all directions before and the other half after: of the lobe the two parts that sum to 1. Just in the plane,
+/// within 8 ε of `f64`, a light is seen edge-on and dark.
 #[derive(Clone, Copy, Debug)]
 pub struct Polygon<'a, R: Real> {
     vertices: &'a [R::Vec3],
@@ -27,23 +41,51 @@ impl<'a, R: Real> Polygon<'a, R> {
         Ok(Self { vertices, sides })
     }
 
+    /// Four vertices, known to be finite.
+    pub(super) fn of_quad(vertices: &'a [R::Vec3; 4], sides: Sides) -> Self {
+        Self { vertices, sides }
+    }
+
+    /// Its vertices.
+    pub fn vertices(&self) -> &'a [R::Vec3] {
+        self.vertices
+    }
+
+    /// Which sides emit.
+    pub fn sides(&self) -> Sides {
+        self.sides
+    }
+
     /// Proportional to the distance of the shading point in front of the light's plane (negative: behind it), and exactly
-    /// 0 where rounding decides the side: within 8 ε of the farthest vertex's distance.
+    /// 0 where `f64` rounding decides the side: within 8 ε of the farthest vertex's distance. Also 0 for a light without
+    /// area: narrower than the same.
     ///
     /// Newell's vector area, taken about the first vertex so that distant lights keep their digits.
-    fn facing(&self) -> R {
-        let scale = self.vertices.iter().fold(R::ZERO, |m, v| m.max(v.max_abs()));
-        if scale <= R::ZERO {
-            return R::ZERO;
+    fn facing(&self) -> f64 {
+        let scale = self.vertices.iter().fold(0.0, |m: f64, v| m.max(v.max_abs().to_f64()));
+        let shrink = power_of_two_near_reciprocal(scale);
+        let first = widen::<R>(self.vertices[0]) * shrink;
+        let (mut area, mut extent) = (DVec3::ZERO, 0.0_f64);
+        let mut previous = widen::<R>(self.vertices[1]) * shrink - first;
+        for vertex in &self.vertices[2..] {
+            let next = widen::<R>(*vertex) * shrink - first;
+            extent = extent.max(previous.abs().max_element()).max(next.abs().max_element());
+            area += previous.cross(next);
+            previous = next;
         }
-        let shrink = R::ONE / scale;
-        let first = self.vertices[0] * shrink;
-        let mut area = R::Vec3::new(R::ZERO, R::ZERO, R::ZERO);
-        for pair in self.vertices[1..].windows(2) {
-            area += (pair[0] * shrink - first).cross(pair[1] * shrink - first);
-        }
-        let facing = -area.dot(first);
-        if facing.abs() <= R::of(8.0) * R::EPSILON * area.length() { R::ZERO } else { facing }
+        let (facing, size) = (-area.dot(first), area.length());
+        let rounding = 8.0 * f64::EPSILON * scale * shrink;
+        if facing.abs() <= rounding * size || size <= rounding * extent { 0.0 } else { facing }
+    }
+
+    /// Whether the light is seen, and if so from which side: +1 winds negatively.
+    pub(super) fn orientation(&self) -> Option<R> {
+        let facing = self.facing();
+        let visible = match self.sides {
+            Sides::One => facing > 0.0,
+            Sides::Two => facing != 0.0,
+        };
+        visible.then_some(if facing > 0.0 { -R::ONE } else { R::ONE })
     }
 }
 
@@ -52,22 +94,16 @@ impl<R: Real> Light<R> for Polygon<'_, R> {
     /// frame) is cut away before the vertices go to cosine space, what lies below the horizon there afterwards. Zero
     /// for a degenerate light, for a shading point in the light's plane, and for one behind a one-sided light.
     fn integrate_within(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
-        let facing = self.facing();
-        let visible = match self.sides {
-            Sides::One => facing > R::ZERO,
-            Sides::Two => facing != R::ZERO,
-        };
-        if !visible {
-            return R::ZERO;
-        }
-        let orientation = if facing > R::ZERO { -R::ONE } else { R::ONE };
+        let Some(orientation) = self.orientation() else { return R::ZERO };
         let mut sum = BoundarySum::new(ltc.cosine_from_target(), horizon);
-        if horizon.surface {
-            clip_to_surface::<R>(self.vertices, |v| sum.push(v));
+        self.vertices.iter().for_each(|v| sum.push(*v));
+        let sum = orientation * sum.finish();
+        if horizon.cosine {
+            fraction_from_boundary(sum)
         } else {
-            self.vertices.iter().for_each(|v| sum.push(*v));
+            // Signed: nothing jumps at the nadir.
+            (sum / (R::of(2.0) * R::PI)).clamped(R::ZERO, R::ONE)
         }
-        fraction_from_boundary(orientation * sum.finish())
     }
 }
 

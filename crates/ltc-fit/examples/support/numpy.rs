@@ -56,7 +56,8 @@ fn seed_words(seed: u32) -> [u32; 8] {
         for target in 0..4 {
             if source != target {
                 let other = hashed(pool[source]);
-                let mixed = pool[target].wrapping_mul(0xca01_f9dd).wrapping_sub(other.wrapping_mul(0x4973_f715));
+                let mixed =
+                    pool[target].wrapping_mul(0xca01_f9dd).wrapping_sub(other.wrapping_mul(0x4973_f715));
                 pool[target] = mixed ^ mixed >> 16;
             }
         }

@@ -100,6 +100,7 @@ fn errors() -> Errors {
         magnitude_max: 0.0,
         fresnel_mean: 0.0,
         fresnel_max: 0.0,
+        grid: None,
     }
 }
 
