@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 use ltc_core::points::SplitMix64;
 use ltc_core::{Ltc, Matrix};
 use ltc_fit::grid_errors::grid_errors;
-use ltc_fit::{GgxFamily, draw, verify};
+use ltc_fit::{FitSpec, GgxFamily, draw, verify};
 use ltc_table::lookup::{Corner, corners};
 use ltc_table::{Lookup, Query, Table, TableVersion, digest::digest};
 use ltc_tests::{shipped, table, wide};
@@ -71,9 +71,9 @@ fn a_planted_entry_is_a_fault_even_where_the_draw_does_not_look() {
     let mut version = catalogue.find("ggx-anisotropic").unwrap().as_ref().clone();
     // As tables have it that are fitted now.
     if version.manifest().errors.grid.is_none() {
-        let (mut manifest, samples) =
-            (version.manifest().clone(), version.manifest().errors.standard_draw.samples);
-        let grid = grid_errors(&GgxFamily, version.table(), &manifest.floors, samples as usize).unwrap();
+        let mut manifest = version.manifest().clone();
+        let spec: FitSpec = serde_json::from_value(manifest.fit.clone()).unwrap();
+        let grid = grid_errors(&GgxFamily, version.table(), &manifest.floors, spec.measure).unwrap();
         manifest.errors.grid = Some(grid);
         version = TableVersion::new(manifest, version.payload().to_vec()).unwrap();
     }

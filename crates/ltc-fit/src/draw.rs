@@ -11,20 +11,32 @@ pub const NARROW_ALPHA: f64 = 0.14;
 /// The standard draw, always off the grid: α half from U[0.01, 1], half from (U[0.1, 1])²; λ = α_y/α_x ~ U[0.05, 1], or 1
 /// in the isotropic draw; θ ~ U[0°, 86°]; φ ~ U[0, 2π).
 pub fn standard(count: usize, seed: u64, isotropic: bool) -> Vec<Query> {
-    let mut rng = SplitMix64::new(seed);
-    (0..count).map(|_| one(&mut rng, isotropic, 0.01, 0.05, 86.0)).collect()
+    up_to(86.0, count, seed, isotropic)
 }
 
-/// Queries for fitting: the standard draw, reaching a little beyond it on all sides, with a few very narrow lobes.
+/// How far θ goes in the draw that magnitude and Fresnel are judged by.
+pub const ALBEDO_THETA_MAX_DEGREES: f64 = 89.0;
+
+/// The standard draw with another end of θ.
+pub fn up_to(theta_max_degrees: f64, count: usize, seed: u64, isotropic: bool) -> Vec<Query> {
+    let mut rng = SplitMix64::new(seed);
+    (0..count).map(|_| one(&mut rng, isotropic, 0.01, 0.05, theta_max_degrees)).collect()
+}
+
+/// Queries for fitting: the standard draw, reaching a little beyond it on all sides, with a few very thin lobes.
 pub fn training(rng: &mut SplitMix64, count: usize, isotropic: bool) -> Vec<Query> {
     (0..count)
         .map(|_| {
             let mut query = one(rng, isotropic, 0.004, 0.03, 89.0);
-            // A tenth goes to the narrow end, down to where tables begin and a little below: lookups there come to the
-            // first entries themselves, which few queries of the draw do.
+            // A tenth goes to the thinnest lobes, half of it near grazing. They are where the largest errors are: few queries of
+            // the draw come there, and its mean hardly feels them.
             if rng.unit() < 0.1 {
-                let alpha = 0.004 * 8.0_f64.powf(rng.unit());
-                (query.alpha_x, query.alpha_y) = (alpha, alpha * query.alpha_y / query.alpha_x);
+                let alpha = 0.004 * 15.0_f64.powf(rng.unit());
+                let lambda = if isotropic { 1.0 } else { 0.03_f64.powf(rng.unit()) };
+                (query.alpha_x, query.alpha_y) = (alpha, alpha * lambda);
+                if rng.unit() < 0.5 {
+                    query.theta = rng.range(75.0, 89.0).to_radians();
+                }
             }
             query
         })

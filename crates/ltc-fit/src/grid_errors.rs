@@ -6,10 +6,13 @@ use ltc_table::{Axis, Floors, GridErrors, Quantity, Query, Table};
 use rayon::prelude::*;
 
 use crate::{
-    Brdf, DiskPoints, FitError, Lattice, Lobe, Node,
-    measure::{MEASURE_SHIFT, maximum, mean},
+    Brdf, DiskPoints, DiskRule, FitError, Lattice, Layout, Lobe, Node,
+    measure::{MEASURE_SHIFT, MeasureSettings, maximum, mean},
     total_variation,
 };
+
+/// Nodes of the quadrature that magnitude and Fresnel are held against: right to 3e-5 in the mean, see [`DiskRule`].
+const ALBEDO_NODES: usize = 2048;
 
 /// What a lookup misses by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,10 +33,10 @@ pub fn grid_errors(
     brdf: &dyn Brdf,
     table: &Table,
     floors: &Floors,
-    samples: usize,
+    settings: MeasureSettings,
 ) -> Result<GridErrors, FitError> {
-    let nodes = node_misses(brdf, table, floors, samples)?;
-    let centres = centre_misses(brdf, table, floors, samples)?;
+    let nodes = node_misses(brdf, table, floors)?;
+    let centres = centre_misses(brdf, table, settings.layout, floors, settings.samples)?;
     let signed = |misses: &[Miss], of: fn(&Miss) -> f64| misses.iter().map(of).collect::<Vec<f64>>();
     let absolute = |misses: &[Miss], of: fn(&Miss) -> f64| {
         let sizes: Vec<f64> = misses.iter().map(|miss| of(miss).abs()).collect();
@@ -67,21 +70,16 @@ pub fn grid_errors(
 ///
 /// # Errors
 /// None for a valid table.
-pub fn node_misses(
-    brdf: &dyn Brdf,
-    table: &Table,
-    floors: &Floors,
-    samples: usize,
-) -> Result<Vec<Miss>, FitError> {
-    let points = DiskPoints::new(samples, MEASURE_SHIFT);
+pub fn node_misses(brdf: &dyn Brdf, table: &Table, floors: &Floors) -> Result<Vec<Miss>, FitError> {
+    let rule = DiskRule::of_about(ALBEDO_NODES);
     let entries = table.magnitude().par_iter().zip(table.fresnel());
     let nodes = Lattice::new(table.axes(), floors).nodes;
     nodes
         .par_iter()
         .zip(entries)
         .map_init(Lobe::default, |lobe, (node, (magnitude, fresnel))| {
-            brdf.sample_lobe(node.wo(), node.widths()?, &points, lobe);
-            Ok(Miss { tv: 0.0, magnitude: magnitude - lobe.magnitude, fresnel: fresnel - lobe.fresnel })
+            let albedo = brdf.albedo(node.wo(), node.widths()?, &rule, lobe);
+            Ok(Miss { tv: 0.0, magnitude: magnitude - albedo.0, fresnel: fresnel - albedo.1 })
         })
         .collect()
 }
@@ -95,27 +93,30 @@ pub fn node_misses(
 pub fn centre_misses(
     brdf: &dyn Brdf,
     table: &Table,
+    layout: Layout,
     floors: &Floors,
     samples: usize,
 ) -> Result<Vec<Miss>, FitError> {
-    let points = DiskPoints::new(samples, MEASURE_SHIFT);
+    let reader = layout.reader(table)?;
+    let (points, rule) = (DiskPoints::new(samples, MEASURE_SHIFT), DiskRule::of_about(ALBEDO_NODES));
     let count: usize = table.axes().iter().map(|axis| axis.len - 1).product();
     (0..count)
         .into_par_iter()
         .map_init(Lobe::default, |lobe, index| {
             let Node { theta, phi, alpha, lambda } = centre(table.axes(), index);
-            let found = table.lookup(&Query { theta, phi, alpha_x: alpha, alpha_y: alpha * lambda })?;
+            let found = reader.lookup(&Query { theta, phi, alpha_x: alpha, alpha_y: alpha * lambda })?;
             let node = Node {
                 theta: theta.min(floors.theta_max),
                 phi,
                 alpha: alpha.max(floors.alpha),
                 lambda: lambda.max(floors.lambda),
             };
+            let (magnitude, fresnel) = brdf.albedo(node.wo(), node.widths()?, &rule, lobe);
             brdf.sample_lobe(node.wo(), node.widths()?, &points, lobe);
             Ok(Miss {
                 tv: total_variation(lobe, DMat3::from_row_array(found.lobes[0].m)),
-                magnitude: found.magnitude - lobe.magnitude,
-                fresnel: found.fresnel - lobe.fresnel,
+                magnitude: found.magnitude - magnitude,
+                fresnel: found.fresnel - fresnel,
             })
         })
         .collect()

@@ -9,7 +9,7 @@ use ltc_table::{
 use rayon::prelude::*;
 
 use crate::{
-    Brdf, DiskPoints, FitError, Lattice, Lobe, Observer, Progress, draw, progress::JOINT, regular,
+    Brdf, DiskPoints, FitError, Lattice, Layout, Lobe, Observer, Progress, draw, progress::JOINT, regular,
     total_variation_gradient,
 };
 
@@ -27,6 +27,9 @@ pub struct JointSettings {
     pub learning_rate: f64,
     /// Seed of the queries.
     pub seed: u64,
+    /// What is interpolated between entries.
+    #[serde(default, skip_serializing_if = "Layout::is_matrix")]
+    pub layout: Layout,
 }
 
 /// A query's place in the table and how its lookup depends on the entries.
@@ -143,10 +146,14 @@ impl<'a> Refinement<'a> {
         let queries = draw::training(rng, settings.queries, isotropic);
         let points = DiskPoints::new(settings.samples, [rng.unit(), rng.unit()]);
         let m = unknowns.matrices();
+        let layout = settings.layout;
+        let stored: Vec<DMat3> = m.iter().map(|m| layout.stored(*m)).collect();
         let gradients: Result<Vec<_>, FitError> = queries
             .par_iter()
             .with_min_len(16)
-            .map_init(Lobe::default, |lobe, query| query_gradient(*brdf, axes, &m, query, &points, lobe))
+            .map_init(Lobe::default, |lobe, query| {
+                query_gradient(*brdf, axes, layout, &stored, query, &points, lobe)
+            })
             .collect();
         let mut by_entry = vec![DMat3::ZERO; m.len()];
         for (place, value, gradient) in gradients? {
@@ -155,7 +162,12 @@ impl<'a> Refinement<'a> {
                 by_entry[corner.index] += gradient * (corner.weight / settings.queries as f64);
             }
         }
-        regular::push_apart(axes, &m, rng.bits(), 1.0 / settings.queries as f64, &mut by_entry);
+        for (m, gradient) in m.iter().zip(&mut by_entry) {
+            *gradient = layout.by_matrix(*m, *gradient);
+        }
+        if layout.is_matrix() {
+            regular::push_apart(axes, &m, rng.bits(), 1.0 / settings.queries as f64, &mut by_entry);
+        }
         let progress = *steps as f64 / settings.steps as f64;
         let rate = settings.learning_rate * 0.5 * (1.0 + (core::f64::consts::PI * progress).cos());
         unknowns.step(&by_entry, rate);
@@ -166,7 +178,7 @@ impl<'a> Refinement<'a> {
 
     /// The refined matrices.
     pub fn finish(mut self) -> Vec<DMat3> {
-        self.unknowns.keep_exportable();
+        self.unknowns.keep_exportable(self.settings.layout);
         self.unknowns.matrices()
     }
 }
@@ -174,13 +186,14 @@ impl<'a> Refinement<'a> {
 fn query_gradient(
     brdf: &dyn Brdf,
     axes: &[Axis],
-    m: &[DMat3],
+    layout: Layout,
+    stored: &[DMat3],
     query: &Query,
     points: &DiskPoints,
     lobe: &mut Lobe,
 ) -> Result<(Place, f64, DMat3), FitError> {
     let place = locate(axes, query)?;
-    let interpolated = interpolate(m, &place.corners);
+    let interpolated = layout.matrix(interpolate(stored, &place.corners));
     let folded = &place.query;
     let alpha = ltc_core::Alpha::new(folded.alpha, folded.alpha * folded.lambda)?;
     brdf.sample_lobe(crate::direction(folded.theta, folded.phi), alpha, points, lobe);
@@ -188,7 +201,7 @@ fn query_gradient(
     // A matrix of the wrong handedness may have a good lobe, but leads away from where all others are.
     let usable = interpolated.determinant() > 0.0 && gradient.is_finite();
     let gradient = if usable { gradient } else { regular::volume_gradient(interpolated) * -1.0 };
-    Ok((place, value, gradient))
+    Ok((place, value, layout.by_stored(interpolated, gradient)))
 }
 
 pub(crate) fn interpolate(m: &[DMat3], corners: &[Corner]) -> DMat3 {
@@ -243,13 +256,14 @@ impl<'a> Unknowns<'a> {
 
     /// Takes entries back towards their start until they keep det M > 0 as half floats: the thinnest lobes' columns are so
     /// nearly parallel that rounding can turn them over.
-    fn keep_exportable(&mut self) {
+    fn keep_exportable(&mut self, layout: Layout) {
         const MOST_STEPS: usize = 60;
         let followers = |owner: usize| self.lattice.ties.iter().filter(move |tie| tie.owner == owner);
         for (k, &index) in self.owners.iter().enumerate() {
             for _ in 0..MOST_STEPS {
                 let m = self.start[index] * factor(&self.delta[k]);
-                if survives_half(m) && followers(index).all(|tie| survives_half(tie.follow(m))) {
+                let survives = |m: DMat3| survives_half(m) && survives_half(layout.stored(m));
+                if followers(index).all(|tie| survives(tie.follow(m))) {
                     break;
                 }
                 self.delta[k] = self.delta[k].map(|d| 0.93 * d);

@@ -25,6 +25,7 @@ pub mod form;
 pub mod gauge;
 pub mod grid_errors;
 pub mod joint;
+mod layout;
 mod lobe;
 pub mod measure;
 mod nelder_mead;
@@ -50,6 +51,7 @@ pub use entry::{EntryFit, fit_entry, refine_by, refine_by_simplex, refine_entry}
 pub use error::FitError;
 pub use fit::{fit, fit_with, publish, publish_with};
 pub use forecast::{Forecast, Outlook};
+pub use layout::{Layout, Reader};
 pub use lobe::Lobe;
 pub use objective::{Goal, Objective, total_variation, total_variation_gradient};
 pub use optimiser::Optimiser;

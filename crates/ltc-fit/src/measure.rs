@@ -1,11 +1,14 @@
 //! How good a table is.
 
 use glam::DMat3;
-use ltc_core::Matrix;
+use ltc_core::{Alpha, Matrix};
 use ltc_table::{CellStats, DrawErrors, Errors, Floors, Kind, Lookup, Query, Table};
 use rayon::prelude::*;
 
-use crate::{Brdf, DiskPoints, FitError, Lattice, Lobe, draw, total_variation};
+use crate::{
+    Brdf, DiskPoints, DiskRule, EntryFit, FitError, Lattice, Layout, Lobe, Pattern, Reader, draw, fit_entry,
+    total_variation,
+};
 
 /// How the errors of a table are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -17,6 +20,9 @@ pub struct MeasureSettings {
     pub samples: usize,
     /// Seed of the queries; the fit must not use it.
     pub seed: u64,
+    /// What a reader of the table interpolates.
+    #[serde(default, skip_serializing_if = "Layout::is_matrix")]
+    pub layout: Layout,
 }
 
 /// Where the samples of a measurement start; fits start elsewhere or at random.
@@ -45,7 +51,8 @@ pub fn cells(brdf: &dyn Brdf, table: &Table, floors: &Floors, samples: usize) ->
     })
 }
 
-/// Errors over the standard draw, and the summary of `cells`.
+/// Errors over the standard draw, and the summary of `cells`. Magnitude and Fresnel over the same draw with θ up to
+/// [`draw::ALBEDO_THETA_MAX_DEGREES`]: they are shaded with up to grazing, and hardest there.
 ///
 /// # Errors
 /// None for a valid table.
@@ -56,16 +63,12 @@ pub fn errors(
     settings: MeasureSettings,
 ) -> Result<Errors, FitError> {
     let isotropic = table.kind() == Kind::Isotropic;
+    let reader = settings.layout.reader(table)?;
     let queries = draw::standard(settings.queries, settings.seed, isotropic);
-    let points = DiskPoints::new(settings.samples, MEASURE_SHIFT);
-    let results: Result<Vec<QueryError>, FitError> = queries
-        .par_iter()
-        .map_init(Lobe::default, |lobe, query| query_error(brdf, table, query, &points, lobe))
-        .collect();
-    let results = results?;
-    let tv: Vec<f64> = results.iter().map(|r| r.tv).collect();
-    let magnitude: Vec<f64> = results.iter().map(|r| r.magnitude).collect();
-    let fresnel: Vec<f64> = results.iter().map(|r| r.fresnel).collect();
+    let tv = query_tv(brdf, &reader, &queries, settings.samples)?;
+    let albedo = albedo_errors(brdf, &reader, settings, isotropic)?;
+    let magnitude: Vec<f64> = albedo.iter().map(|e| e[0]).collect();
+    let fresnel: Vec<f64> = albedo.iter().map(|e| e[1]).collect();
     Ok(Errors {
         standard_draw: draw_errors(&queries, &tv, settings, isotropic),
         leak_max: maximum(&cells.leak),
@@ -81,29 +84,77 @@ pub fn errors(
     })
 }
 
-struct QueryError {
-    tv: f64,
-    magnitude: f64,
-    fresnel: f64,
-}
-
-fn query_error(
+/// Total variation of what a reader gets for each query.
+///
+/// # Errors
+/// Those of the reader's lookup.
+pub fn query_tv(
     brdf: &dyn Brdf,
-    table: &Table,
-    query: &Query,
-    points: &DiskPoints,
-    lobe: &mut Lobe,
-) -> Result<QueryError, FitError> {
-    brdf.sample_lobe(crate::direction(query.theta, query.phi), query.validate()?, points, lobe);
-    let Lookup { lobes, magnitude, fresnel } = table.lookup(query)?;
-    Ok(QueryError {
-        tv: total_variation(lobe, DMat3::from_row_array(lobes[0].m)),
-        magnitude: (magnitude - lobe.magnitude).abs(),
-        fresnel: (fresnel - lobe.fresnel).abs(),
-    })
+    reader: &Reader<'_>,
+    queries: &[Query],
+    samples: usize,
+) -> Result<Vec<f64>, FitError> {
+    let points = DiskPoints::new(samples, MEASURE_SHIFT);
+    queries
+        .par_iter()
+        .map_init(Lobe::default, |lobe, query| {
+            brdf.sample_lobe(crate::direction(query.theta, query.phi), query.validate()?, &points, lobe);
+            let Lookup { lobes, .. } = reader.lookup(query)?;
+            Ok(total_variation(lobe, DMat3::from_row_array(lobes[0].m)))
+        })
+        .collect()
 }
 
-fn draw_errors(queries: &[Query], tv: &[f64], settings: MeasureSettings, isotropic: bool) -> DrawErrors {
+/// Nodes of the quadrature that magnitude and Fresnel are held against: right to 1e-4, see [`DiskRule`].
+const ALBEDO_NODES: usize = 8192;
+
+/// Errors of the magnitude and the Fresnel term at each query.
+fn albedo_errors(
+    brdf: &dyn Brdf,
+    reader: &Reader<'_>,
+    settings: MeasureSettings,
+    isotropic: bool,
+) -> Result<Vec<[f64; 2]>, FitError> {
+    let rule = DiskRule::of_about(ALBEDO_NODES);
+    draw::up_to(draw::ALBEDO_THETA_MAX_DEGREES, settings.queries, settings.seed, isotropic)
+        .par_iter()
+        .map_init(Lobe::default, |lobe, query| {
+            let wo = crate::direction(query.theta, query.phi);
+            let (magnitude, fresnel) = brdf.albedo(wo, query.validate()?, &rule, lobe);
+            let found = reader.lookup(query)?;
+            Ok([(found.magnitude - magnitude).abs(), (found.fresnel - fresnel).abs()])
+        })
+        .collect()
+}
+
+/// The least total variation that any single LTC leaves at each query of the standard draw: each fitted by itself, from the
+/// medians of its lobe, and judged by other samples than it was fitted to. No table of single LTCs can do better.
+///
+/// # Errors
+/// None for a valid BRDF.
+pub fn optimum(brdf: &dyn Brdf, queries: &[Query], samples: usize) -> Result<Vec<f64>, FitError> {
+    const MOST_ITERATIONS: usize = 300;
+    let fitted = DiskPoints::new(samples.min(2048), [0.5, 0.5]);
+    let unseen = DiskPoints::new(samples, MEASURE_SHIFT);
+    queries
+        .par_iter()
+        .map_init(Lobe::default, |lobe, query| {
+            let folded = query.fold()?;
+            // Equal widths: any φ has the lobe of φ = 0, turned.
+            let (phi, pattern) =
+                if folded.lambda == 1.0 { (0.0, Pattern::MirrorY) } else { (folded.phi, Pattern::General) };
+            let wo = crate::direction(folded.theta, phi);
+            let alpha = Alpha::new(folded.alpha, folded.alpha * folded.lambda)?;
+            brdf.sample_lobe(wo, alpha, &fitted, lobe);
+            let EntryFit { m, .. } = fit_entry(lobe, wo, pattern, MOST_ITERATIONS);
+            brdf.sample_lobe(wo, alpha, &unseen, lobe);
+            Ok(total_variation(lobe, m))
+        })
+        .collect()
+}
+
+/// The statistics of the total variation at each query of a draw.
+pub fn draw_errors(queries: &[Query], tv: &[f64], settings: MeasureSettings, isotropic: bool) -> DrawErrors {
     let mut sorted = tv.to_vec();
     sorted.sort_by(f64::total_cmp);
     let among = |narrow: bool| {
@@ -123,7 +174,7 @@ fn draw_errors(queries: &[Query], tv: &[f64], settings: MeasureSettings, isotrop
         tv_max: maximum(tv),
         tv_mean_alpha_below_0_14: among(true),
         tv_mean_alpha_from_0_14: among(false),
-        queries: settings.queries as u32,
+        queries: queries.len() as u32,
         samples: settings.samples as u32,
         seed: settings.seed,
     }

@@ -120,7 +120,13 @@ impl FitReport {
             region
         });
         let samples = plan.spec().measure.samples;
-        let centres = centre_misses(plan.brdf(), &fitted.table, &plan.spec().floors, samples)?;
+        let centres = centre_misses(
+            plan.brdf(),
+            &fitted.table,
+            plan.spec().measure.layout,
+            &plan.spec().floors,
+            samples,
+        )?;
         Ok(Self {
             name: plan.spec().name.clone(),
             stages: stages(plan, fitted),
@@ -148,6 +154,7 @@ fn compare(
     /// Iterations for an optimum: enough to converge.
     const ITERATIONS: usize = 300;
     let (brdf, settings) = (plan.brdf(), plan.spec().measure);
+    let reader = settings.layout.reader(table)?;
     let queries = draw::standard(settings.queries, settings.seed, table.axes().len() == 2);
     let [fitted, unseen] = [[0.5, 0.5], MEASURE_SHIFT].map(|shift| DiskPoints::new(settings.samples, shift));
     let done = std::sync::atomic::AtomicUsize::new(0);
@@ -155,7 +162,7 @@ fn compare(
         .par_iter()
         .map_init(Lobe::default, |lobe, query| {
             let (wo, alpha) = (crate::direction(query.theta, query.phi), query.validate()?);
-            let of_table = DMat3::from_row_array(table.lookup(query)?.lobes[0].m);
+            let of_table = DMat3::from_row_array(reader.lookup(query)?.lobes[0].m);
             brdf.sample_lobe(wo, alpha, &fitted, lobe);
             let starts = [
                 fit_entry(lobe, wo, Pattern::General, ITERATIONS),

@@ -251,7 +251,7 @@ impl<'a> FitRun<'a> {
         report(1)?;
         let errors = measure::errors(brdf, &bare, &cells, spec.measure)?;
         report(2)?;
-        let grid = Some(grid_errors(brdf, &bare, &spec.floors, spec.measure.samples)?);
+        let grid = Some(grid_errors(brdf, &bare, &spec.floors, spec.measure)?);
         let CellStats { tv, leak, condition } = cells;
         self.state.errors = Some(Measured { tv, leak, condition, errors: Errors { grid, ..errors } });
         report(3)

@@ -6,7 +6,7 @@ use ltc_table::{Axis, Floors, Mapping, Quantity, check_name};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Brdf, FitError, GgxFamily, Objective, brdf, channels::ChannelSettings, entries::EntrySettings,
+    Brdf, FitError, GgxFamily, Layout, Objective, brdf, channels::ChannelSettings, entries::EntrySettings,
     joint::JointSettings, measure::MeasureSettings,
 };
 
@@ -37,9 +37,10 @@ pub struct FitSpec {
 
 impl FitSpec {
     /// Names of the presets.
-    pub const PRESETS: [&'static str; 7] = [
+    pub const PRESETS: [&'static str; 8] = [
         "ggx-isotropic",
         "ggx-anisotropic",
+        "ggx-isotropic-dropin",
         "beckmann-isotropic",
         "beckmann-anisotropic",
         "disney-diffuse",
@@ -52,19 +53,15 @@ impl FitSpec {
     /// # Errors
     /// [`FitError::NoSuchPreset`].
     pub fn preset(name: &str) -> Result<Self, FitError> {
-        use Quantity::{Alpha, Theta};
         if let Some(spec) = brdf::preset(name) {
             return Ok(spec);
         }
-        let (axes, joint) = match name {
-            "ggx-isotropic" => (
-                vec![Axis::full(Theta, Mapping::SqrtOneMinusCos, 64), Axis::full(Alpha, Mapping::Sqrt, 64)],
-                JointSettings { steps: 200, queries: 2048, samples: 256, learning_rate: 3e-3, seed: 3 },
-            ),
-            "ggx-anisotropic" => (
-                anisotropic_axes(),
-                JointSettings { steps: 1500, queries: 2048, samples: 256, learning_rate: 6e-3, seed: 3 },
-            ),
+        let layout = if name == "ggx-isotropic-dropin" { Layout::DropIn } else { Layout::Matrix };
+        let (axes, steps, learning_rate, channel_queries) = match name {
+            "ggx-isotropic" | "ggx-isotropic-dropin" => {
+                (ltc_table::drop_in::axes(64).to_vec(), 200, 3e-3, 20_000)
+            }
+            "ggx-anisotropic" => (anisotropic_axes(), 1500, 6e-3, 60_000),
             _ => {
                 let known = Self::PRESETS.join(", ");
                 return Err(FitError::NoSuchPreset { name: name.to_owned(), known });
@@ -77,9 +74,9 @@ impl FitSpec {
             floors: Floors { alpha: 1e-3, lambda: 0.03, theta_max: 89.5_f64.to_radians() },
             objective: "total_variation".to_owned(),
             entries: EntrySettings::new(512, 100),
-            joint,
-            channels: ChannelSettings { samples: 2048, queries: 20_000, seed: 5 },
-            measure: MeasureSettings { queries: 3000, samples: 4096, seed: 77 },
+            joint: JointSettings { steps, queries: 2048, samples: 256, learning_rate, seed: 3, layout },
+            channels: ChannelSettings { samples: 2048, queries: channel_queries, seed: 5 },
+            measure: MeasureSettings { queries: 3000, samples: 4096, seed: 77, layout },
         })
     }
 
@@ -140,7 +137,22 @@ impl FitSpec {
         if nodes > MAX_NODES {
             return wrong("axes", format!("have {nodes} nodes in all, must have at most {MAX_NODES}"));
         }
+        self.validate_layout()?;
         self.validate_numbers()
+    }
+
+    fn validate_layout(&self) -> Result<(), FitError> {
+        let wrong = |field, reason: &str| Err(FitError::Spec { field, reason: reason.to_owned() });
+        if self.measure.layout != self.joint.layout {
+            return wrong("measure.layout", "must be joint.layout: what is fitted is what is read");
+        }
+        let drop_in = self.axes == ltc_table::drop_in::axes(self.axes[0].len);
+        if self.joint.layout == Layout::DropIn && !drop_in {
+            let reason = "of the layout drop_in must be theta (sqrt_one_minus_cos) and alpha (sqrt) over their whole ranges, as many \
+                          nodes each";
+            return wrong("axes", reason);
+        }
+        Ok(())
     }
 
     /// The objective of that name.
@@ -263,5 +275,8 @@ mod tests {
             broken(|s| s.axes.iter_mut().for_each(|a| a.len = 4096)).starts_with("axes: have 2814749767")
         );
         assert!(broken(|s| s.axes[1].domain = [0.1, 1.0]).starts_with("axes[1]:"));
+        assert!(broken(|s| s.measure.layout = Layout::DropIn).starts_with("measure.layout:"));
+        let drop_in = broken(|s| (s.joint.layout, s.measure.layout) = (Layout::DropIn, Layout::DropIn));
+        assert!(drop_in.starts_with("axes: of the layout drop_in"), "{drop_in}");
     }
 }

@@ -114,7 +114,8 @@ const COMMENTS: &[(&str, &str)] = &[
     (
         "axes",
         "The axes, slowest first: theta, alpha (isotropic) or theta, phi, alpha, lambda.\n\
-         mapping: nodes are even in x (linear), in the root of x (sqrt) or in the root of 1 - cos x (sqrt_one_minus_cos).\n\
+         mapping: nodes are even in x (linear), in the root of x (sqrt), in the root of 1 - cos x (sqrt_one_minus_cos)\n\
+         or in tan(x/2) (half_tangent).\n\
          domain: first and last node, angles in radians; left out, it is the whole range. len: number of nodes.",
     ),
     ("floors", "Smallest values that the BRDF is evaluated at."),
@@ -136,13 +137,18 @@ const COMMENTS: &[(&str, &str)] = &[
     ("joint.samples", "Samples of the lobe at each query."),
     ("joint.learning_rate", "Length of the first steps, relative to each lobe's width."),
     ("joint.seed", "Seed of the queries."),
+    (
+        "joint.layout",
+        "What is interpolated: matrix (left out, it is this), or drop_in, the inverse as engines ship it.",
+    ),
     ("channels", "Then magnitude and Fresnel."),
-    ("channels.samples", "Samples of each integral."),
+    ("channels.samples", "Nodes of each integral's quadrature."),
     ("channels.queries", "Random queries between the entries; 0 keeps the entries' own values."),
     ("channels.seed", "Seed of the queries."),
     ("measure", "Last, how good the table is."),
     ("measure.queries", "Random queries of the standard draw."),
     ("measure.samples", "Samples of the lobe at each query and at each entry."),
+    ("measure.layout", "As in joint."),
     ("measure.seed", "Seed of the queries; no seed of the fit may be the same."),
 ];
 

@@ -145,7 +145,7 @@ fn check_figures(
     let mut errors = measure::errors(brdf, table, &cells, spec.measure)?;
     // Tables from before there were such errors say nothing of them.
     if stated.grid.is_some() {
-        errors.grid = Some(grid_errors(brdf, table, &spec.floors, spec.measure.samples)?);
+        errors.grid = Some(grid_errors(brdf, table, &spec.floors, spec.measure)?);
     }
     let value = |errors: &Errors| serde_json::to_value(errors).map_err(TableError::from);
     compare_values("errors", &value(&errors)?, &value(stated)?, faults);

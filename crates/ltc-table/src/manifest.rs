@@ -87,11 +87,11 @@ pub struct Errors {
     pub cell_tv_mean: f64,
     /// Its maximum.
     pub cell_tv_max: f64,
-    /// Mean error of the interpolated magnitude over the draw.
+    /// Mean error of the interpolated magnitude over the draw with θ up to 89°.
     pub magnitude_mean: f64,
     /// Its maximum.
     pub magnitude_max: f64,
-    /// Mean error of the interpolated Fresnel term over the draw.
+    /// Mean error of the interpolated Fresnel term over the same.
     pub fresnel_mean: f64,
     /// Its maximum.
     pub fresnel_max: f64,
