@@ -90,6 +90,24 @@ fn the_oracle_sees_solids_from_inside() {
     assert_eq!(oracle(&cylinder(false)), 0.0);
 }
 
+/// Rounding bends a rectangle, here so that the point is between its two halves. Its outline then crosses itself, with next to
+/// nothing inside.
+#[test]
+fn the_oracle_does_not_take_a_crossed_outline_for_everything() {
+    let vertices = vec![
+        [1.619157075881958, 0.9043021202087402, 0.9729084968566895],
+        [2.0175654888153076, -0.3850133717060089, 2.449030637741089],
+        [0.6272194981575012, -1.47629976272583, 1.8711062669754028],
+        [0.22881099581718445, -0.18698422610759735, 0.39498427510261536],
+    ];
+    let case = Case::new(DMat3::IDENTITY, AnyLight::Polygon { vertices, sides: Sides::Two }, false);
+    assert!(oracle(&case) < 1e-6, "{}", oracle(&case));
+    // The control: right under a light everything is it.
+    let vertices = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| [x, y, 1e-7]).to_vec();
+    let case = Case::new(DMat3::IDENTITY, AnyLight::Polygon { vertices, sides: Sides::Two }, false);
+    assert!(oracle(&case) > 1.0 - 1e-6);
+}
+
 /// The control: errors of a few parts in 1e8, planted in the light or in the lobe, are seen.
 #[test]
 fn the_oracle_tells_a_light_from_a_slightly_other_one() {

@@ -60,16 +60,17 @@ impl Lobe {
 
     /// The mass inside the closed curve, which has its inside on the left.
     fn fraction(&self, outline: &[Conic]) -> f64 {
-        let mut sum = D::ZERO;
+        let (mut sum, mut azimuth) = (D::ZERO, 0.0);
         for piece in above_surface(outline) {
             for part in piece.mapped(|p| self.to_cosine(p)).cut_at_horizon() {
                 sum += turning(&part);
+                azimuth += sweep(&part);
             }
         }
         let value = (sum / (D::PI * 2.0.into())).to_f64();
-        // Around the nadir.
-        let value = if value < -1e-14 { value + 1.0 } else { value };
-        value.clamp(0.0, 1.0)
+        // Next to 0 or 1 only the way around tells which; elsewhere a negative value alone does, and does not depend on steps.
+        let is_around_nadir = value < -1e-6 || (value < 0.0 && azimuth < -core::f64::consts::PI);
+        (if is_around_nadir { value + 1.0 } else { value }).clamp(0.0, 1.0)
     }
 }
 
@@ -94,6 +95,19 @@ fn above_surface(outline: &[Conic]) -> Vec<Conic> {
     // The first came round again.
     kept.pop();
     kept
+}
+
+/// By how much the azimuth grows along a part, in small steps.
+fn sweep(part: &Conic) -> f64 {
+    const STEPS: u32 = 64;
+    let [from, to] = part.range;
+    let at = |i: u32| part.at(from + (to - from) * (f64::from(i) / f64::from(STEPS)).into()).0;
+    (0..STEPS)
+        .map(|i| {
+            let ([a, b, _], [x, y, _]) = (at(i), at(i + 1));
+            (a * y - b * x).to_f64().atan2((a * x + b * y).to_f64())
+        })
+        .sum()
 }
 
 /// `∫ f` along a part that no horizon cuts, in cosine space.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::error::ReferenceError;
-use crate::fan::{Fan, integrate_sectors};
+use crate::fan::{Fan, Sectors, Spread};
 use crate::lobe::Lobe;
 use crate::quadrature::{Estimate, Tolerance};
 use crate::sphere::integrate_sphere;
@@ -41,7 +41,8 @@ pub fn integrate_sphere_light(
     let (x, y) = axis.any_orthonormal_pair();
     // The fan over the cap's plane tangent to the unit sphere: s is tan θ over tan σ.
     let half_spaces = lobe.half_spaces();
-    let fan = Fan { centre: axis, u: x * tangent, v: y * tangent, half_spaces: &half_spaces };
+    let (u, v) = (x * tangent, y * tangent);
+    let fan = Fan { pole: [0.0; 2], origin: axis, u, v, half_spaces: &half_spaces };
     let bounds = |phi: f64| {
         let [low, high] = fan.bounds(phi);
         let high = if high >= 1.0 { sigma } else { (high * tangent).atan() };
@@ -54,5 +55,13 @@ pub fn integrate_sphere_light(
     };
     let seeds: Vec<[f64; 2]> =
         fan.seeds(lobe).into_iter().map(|[phi, s]| [phi, (s * tangent).atan() / sigma]).collect();
-    integrate_sectors(integrand, bounds, &fan.sectors(), &seeds, tolerance)
+    Sectors {
+        f: integrand,
+        bounds,
+        sectors: &fan.sectors(),
+        seeds: &seeds,
+        spread_t: Spread::new(f64::INFINITY),
+        spread_s: |_| Spread::new(f64::INFINITY),
+    }
+    .integrate(tolerance)
 }

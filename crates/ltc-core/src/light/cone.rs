@@ -41,7 +41,7 @@ pub(super) struct Cone<R: Real> {
 }
 
 impl<R: Real> Cone<R> {
-    /// The cone over `c + u cos t + v sin t`, whose largest coordinate should be near 1: squares must not overflow. `u × v`
+    /// The cone over `c + u cos t + v sin t`, whose coordinates should be near 1: sixth powers must not overflow. `u × v`
     /// points away from the origin; where rounding says otherwise the origin is next to the ellipse's plane, on that
     /// side. `None` without area.
     #[inline]
@@ -164,7 +164,7 @@ impl<R: Real> Confocal<R> {
     /// a circle this is exact at once, for a distant ellipse nearly so; it converges quadratically.
     #[inline]
     fn root(&self) -> R {
-        let enough = R::of(0.25) * R::EPSILON.sqrt();
+        let enough = R::EPSILON.sqrt();
         let pole = if self.offset > R::ZERO { self.trace - self.crossed / self.offset } else { R::ZERO };
         let mut root = one_pole(self.offset, pole.max(R::ZERO), self.height);
         for _ in 0..MAX_STEPS {
@@ -174,7 +174,9 @@ impl<R: Real> Confocal<R> {
                 break;
             }
             let weight = numerator / slope;
-            let pole = (self.denominator(root) * weight - root).clamped(R::ZERO, self.trace);
+            // Above 0 but for rounding.
+            let pole = self.denominator(root) * weight - root;
+            let pole = if pole > R::ZERO { pole } else { R::ZERO };
             let next = one_pole(numerator * weight, pole, self.height);
             let moved = (next - root).abs();
             root = next;
@@ -182,7 +184,8 @@ impl<R: Real> Confocal<R> {
                 break;
             }
         }
-        root
+        // h²/λ is one of the terms that sum to 1.
+        root.max(self.height)
     }
 }
 
@@ -192,6 +195,5 @@ fn one_pole<R: Real>(w: R, p: R, hh: R) -> R {
     let half = R::of(0.5) * (w + hh - p);
     let product = hh * p;
     let root = (half.squared() + product).sqrt();
-    let lambda = if half >= R::ZERO { half + root } else { product / (root - half) };
-    lambda.max(hh)
+    if half >= R::ZERO { half + root } else { product / (root - half) }
 }

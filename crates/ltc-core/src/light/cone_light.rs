@@ -41,9 +41,34 @@ fn place<R: Real>(centre: R, u: R, v: R) -> Place {
     }
 }
 
-/// Scales the largest coordinate to 1; `None` for zero and for what is not finite.
-#[inline]
-fn scaled<R: Real>(vectors: [R::Vec3; 3]) -> Option<[R::Vec3; 3]> {
+/// An ellipse in both spaces, in units that keep powers of its coordinates in range: centre and half-axes.
+struct InSpaces<R: Real> {
+    target: [R::Vec3; 3],
+    cosine: [R::Vec3; 3],
+}
+
+impl<R: Real> InSpaces<R> {
+    /// `None` for what is zero or not finite.
+    #[inline]
+    fn of(target: [R::Vec3; 3], spaces: &Spaces<R>) -> Option<Self> {
+        let cosine = target.map(|p| spaces.cosine_from_target.apply(p));
+        let squared = cosine.iter().fold(R::ZERO, |sum, p| sum + p.dot(*p));
+        // No entry of M is above 1, so that the target's coordinates are no larger than three times these.
+        let usual = squared > R::of(1e-8) && squared < R::of(1e8);
+        if usual { Some(Self { target, cosine }) } else { Self::rescaled(target, spaces) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn rescaled(target: [R::Vec3; 3], spaces: &Spaces<R>) -> Option<Self> {
+        let target = unit_sized::<R>(target)?;
+        let cosine = unit_sized::<R>(target.map(|p| spaces.cosine_from_target.apply(p)))?;
+        Some(Self { target, cosine })
+    }
+}
+
+/// Scales the largest coordinate to 1.
+fn unit_sized<R: Real>(vectors: [R::Vec3; 3]) -> Option<[R::Vec3; 3]> {
     let largest = vectors[0].max_abs().max(vectors[1].max_abs()).max(vectors[2].max_abs());
     let shrink = R::ONE / largest;
     (largest > R::ZERO && largest.is_finite() && shrink.is_finite()).then(|| vectors.map(|v| v * shrink))
@@ -51,11 +76,13 @@ fn scaled<R: Real>(vectors: [R::Vec3; 3]) -> Option<[R::Vec3; 3]> {
 
 impl<R: Real> ConeLight<R> {
     /// The whole cone; `u × v` points away from the shading point.
+    #[inline]
     pub fn new(centre: R::Vec3, u: R::Vec3, v: R::Vec3) -> Self {
         Self { centre, u, v, kept: None }
     }
 
     /// The cone over a light whose front is where `u × v` points to.
+    #[inline]
     pub fn seen(side: Seen, centre: R::Vec3, u: R::Vec3, v: R::Vec3) -> Self {
         match side {
             Seen::Front => Self::new(centre, v, u),
@@ -69,27 +96,26 @@ impl<R: Real> ConeLight<R> {
     }
 
     /// The fraction of `ltc` in it, between the horizons asked for.
+    #[inline]
     pub fn fraction(&self, spaces: &Spaces<R>, horizon: Horizon) -> R {
         self.signed_fraction(spaces, horizon).clamped(R::ZERO, R::ONE)
     }
 
     /// The same before it is clamped: a part of a sum. Negative without the cosine's horizon, or by rounding.
+    #[inline]
     pub fn signed_fraction(&self, spaces: &Spaces<R>, horizon: Horizon) -> R {
         self.seen_fraction(spaces, horizon).unwrap_or(R::ZERO)
     }
 
+    #[inline]
     fn seen_fraction(&self, spaces: &Spaces<R>, horizon: Horizon) -> Option<R> {
-        let seen = scaled::<R>([self.centre, self.u, self.v])?;
-        let surface = match horizon.surface {
-            true => place(seen[0].z(), seen[1].z(), seen[2].z()),
-            false => Place::Above,
+        let InSpaces { target, cosine } = InSpaces::of([self.centre, self.u, self.v], spaces)?;
+        let place_in = |[c, u, v]: [R::Vec3; 3], cut: bool| {
+            if cut { place(c.z(), u.z(), v.z()) } else { Place::Above }
         };
-        if surface == Place::Below {
-            return None;
-        }
-        let [c, u, v] = scaled::<R>(seen.map(|p| spaces.cosine_from_target.apply(p)))?;
-        let cosine = if horizon.cosine { place(c.z(), u.z(), v.z()) } else { Place::Above };
-        if cosine == Place::Below {
+        let (surface, [c, u, v]) = (place_in(target, horizon.surface), cosine);
+        let cosine = place_in(cosine, horizon.cosine);
+        if surface == Place::Below || cosine == Place::Below {
             return None;
         }
         let cone = Cone::new(c, u, v)?;
@@ -99,6 +125,7 @@ impl<R: Real> ConeLight<R> {
         self.cut(&cone, spaces, [surface == Place::Across, cosine == Place::Across])
     }
 
+    #[inline(never)]
     fn cut(&self, cone: &Cone<R>, spaces: &Spaces<R>, [surface, cosine]: [bool; 2]) -> Option<R> {
         let axes = cone.axes()?;
         let to_axes =
@@ -124,6 +151,7 @@ impl<R: Real> ConeLight<R> {
     }
 }
 
+#[inline]
 fn up<R: Real>() -> R::Vec3 {
     R::Vec3::new(R::ZERO, R::ZERO, R::ONE)
 }

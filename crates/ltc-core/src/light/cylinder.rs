@@ -27,6 +27,11 @@ use view::{Beside, View};
 /// - **Inside** or on the surface: with caps the light is seen in every direction, as with [`crate::Sphere`]; a tube is dark
 ///   inside.
 /// - **Valid range**: any finite ends, radius ≥ 0. Radius 0 or equal ends give exactly 0.
+/// - **Accuracy** (`tests/round`): f64 within 1e-9 of cubature (measured 4e-13) over roughness from 1e-4, grazing to 89.99°, scales
+///   from 1e-6 to 1e6, lengths to 1e5 radii, from
+///   1e-7 of the radius outside; f32 within 2e-5 of f64 of the same input, 1e-4 with its rounding where the
+///   light is up to 1e3 times nearer or farther than its size. Both times cond M / 100 above 100.
+///   In f32, too, it is evaluated in f64.
 ///
 /// ```
 /// use glam::DVec3;
@@ -67,7 +72,7 @@ impl<R: Real> Cylinder<R> {
     }
 }
 
-/// In f64 for both precisions; see `View::of`.
+/// In f64 for both precisions: from near the mantle, and for long cylinders, differences of coordinates decide.
 impl<R: Real> Light<R> for Cylinder<R> {
     fn integrate_within(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
         let lobe = Lobe { spaces: Spaces::wide(ltc), horizon };

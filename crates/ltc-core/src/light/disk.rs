@@ -18,6 +18,7 @@ use crate::{InputError, Ltc, Real, Vector, check_range};
 /// - **Formula**: exact for every lobe; see [`Ellipse`], of which this is the round one.
 /// - **Valid range**: any finite centre, any normal but 0, radius ≥ 0. Radius 0, a shading point in the disk's plane (as far
 ///   as rounding can tell) or behind a one-sided disk give exactly 0.
+/// - **Accuracy**: that of [`Ellipse`].
 ///
 /// ```
 /// use glam::DVec3;
@@ -71,6 +72,7 @@ impl<R: Real> Disk<R> {
 }
 
 impl<R: Real> Light<R> for Disk<R> {
+    #[inline]
     fn integrate_within(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
         let Some(Facing { side, is_grazing }) = side_of_normal::<R>(self.centre, self.normal, self.sides)
         else {

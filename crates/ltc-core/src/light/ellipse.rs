@@ -19,6 +19,11 @@ use crate::{InputError, Ltc, Real, Vector};
 ///   left: `½ ∮ (r × dr)·z/|r|²` has an artanh, an arctan and an angle for each arc, an angle for each chord.
 /// - **Valid range**: any finite input. An ellipse without area, a shading point in its plane (as far as rounding can tell)
 ///   or behind a one-sided one give exactly 0.
+/// - **Accuracy** (`tests/round`): f64 within 1e-9 of cubature (measured 4e-13) over roughness from 1e-4, grazing to 89.99°, scales
+///   from 1e-6 to 1e6, aspects to 1e5, distances to the
+///   light's plane from 1e-7; f32 within 2e-5 of f64 of the same input, 1e-4 with its rounding where the
+///   light is up to 1e3 times nearer or farther than its size. Both times cond M / 100 above 100. At δ from a light of size s, nearer than
+///   that, an f32 costs ε s/δ.
 ///
 /// ```
 /// use glam::DVec3;
@@ -67,6 +72,7 @@ impl<R: Real> Ellipse<R> {
 }
 
 impl<R: Real> Light<R> for Ellipse<R> {
+    #[inline]
     fn integrate_within(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
         let Some(Facing { side, is_grazing }) = self.side() else { return R::ZERO };
         if is_grazing {

@@ -1,5 +1,7 @@
 //! Spherical lights: the fraction of a lobe that sees the sphere, in closed form.
 
+use glam::DVec3;
+
 use super::cone_light::ConeLight;
 use super::spaces::Spaces;
 use super::surround::everywhere;
@@ -17,6 +19,9 @@ use crate::{InputError, Ltc, Real, Vector, check_range};
 /// - **Formula**: exact for every lobe. From outside the sphere fills a round cone of half-width asin(radius/|centre|), which
 ///   M⁻¹ makes an elliptical one: see [`crate::Ellipse`].
 /// - **Valid range**: any finite centre, radius ≥ 0; radius 0 gives exactly 0.
+/// - **Accuracy** (`tests/round`): f64 within 1e-9 of cubature (measured 4e-13) over roughness from 1e-4, grazing to 89.99°, scales
+///   from 1e-6 to 1e6, from 1e-7 of the radius outside; f32 within 2e-5 of f64 of the same input, 1e-4 with its rounding where the
+///   light is up to 1e3 times nearer or farther than its size. Both times cond M / 100 above 100.
 ///
 /// ```
 /// use glam::DVec3;
@@ -61,30 +66,38 @@ impl<R: Real> Sphere<R> {
         Ok(Self { centre, radius })
     }
 
-    /// In lengths over a power of two near the largest of centre and radius. `None` for radius 0. In f64: from near the
-    /// surface, d − r decides.
+    /// `None` for radius 0. In f64: from near the surface, d − r decides. In lengths over a power of two where squares over- or
+    /// underflow.
+    #[inline]
     fn view(&self) -> Option<View<R>> {
         let (centre, radius) = (widened::<R>(self.centre), self.radius.to_f64());
+        let squared = centre.length_squared();
+        if squared > 1e-200 && squared.max(radius) < 1e100 && radius > 1e-100 {
+            return Some(Self::view_of(centre, radius, squared));
+        }
         let factor = shrink(centre.abs().max_element().max(radius))?;
         let (centre, radius) = (centre * factor, radius * factor);
-        if radius <= 0.0 {
-            return None;
-        }
-        let distance = centre.length();
+        (radius > 0.0).then(|| Self::view_of(centre, radius, centre.length_squared()))
+    }
+
+    #[inline]
+    fn view_of(centre: DVec3, radius: f64, squared: f64) -> View<R> {
+        let distance = squared.sqrt();
         if distance <= radius {
-            return Some(View::Inside);
+            return View::Inside;
         }
         let tangent = ((distance - radius) * (distance + radius)).sqrt();
-        Some(View::Outside(Outside {
-            towards: narrowed::<R>(centre / distance),
+        View::Outside(Outside {
+            towards: narrowed::<R>(centre * (1.0 / distance)),
             distance: R::of(distance),
             radius: R::of(radius),
             tangent: R::of(tangent),
-        }))
+        })
     }
 }
 
 impl<R: Real> Light<R> for Sphere<R> {
+    #[inline]
     fn integrate_within(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
         match self.view() {
             None => R::ZERO,
@@ -137,7 +150,7 @@ impl<R: Real> SampleLight<R> for Sphere<R> {
 impl<R: Real> Outside<R> {
     /// 1 − cos of the cone's half-width, without cancellation: r²/(d (d + √(d² − r²))).
     fn cap(&self) -> R {
-        self.radius.squared() / (self.distance * (self.distance + self.tangent))
+        self.radius / self.distance * (self.radius / (self.distance + self.tangent))
     }
 }
 

@@ -13,20 +13,17 @@ pub fn sum(lobe: &Lobe, m: DMat3, term: impl Fn(f64, f64, f64) -> f64) -> Option
     let mut sum = [0.0; LANES];
     for i in (0..lobe.len()).step_by(LANES) {
         let s = kernel.sample(lobe, i);
-        for (k, lane) in sum.iter_mut().enumerate() {
-            let share = s.over_z[k] * s.w[2][k].max(0.0);
-            *lane += term(lobe.weight[i + k], share, lobe.inverse[i + k]);
-        }
+        sum = core::array::from_fn(|k| sum[k] + term(s.weight[k], s.share[k], s.inverse[k]));
     }
     Some(sum.iter().sum())
 }
 
-/// The same with `term` giving its value and its derivative by the share: the sum, and its derivative by every entry of
-/// `M`.
+/// The same with `term(weight, share, inverse, scale)` giving its value and minus its derivative by the share, times `scale`:
+/// the sum, and its derivative by every entry of `M`.
 pub fn sum_with_gradient(
     lobe: &Lobe,
     m: DMat3,
-    term: impl Fn(f64, f64, f64) -> (f64, f64),
+    term: impl Fn(f64, f64, f64, f64) -> (f64, f64),
 ) -> Option<(f64, DMat3)> {
     let kernel = Kernel::new(m)?;
     let mut value = [0.0; LANES];
@@ -35,18 +32,16 @@ pub fn sum_with_gradient(
     for i in (0..lobe.len()).step_by(LANES) {
         let s = kernel.sample(lobe, i);
         for k in 0..LANES {
-            let share = s.over_z[k] * s.w[2][k].max(0.0);
-            let (term, by_share) = term(lobe.weight[i + k], share, lobe.inverse[i + k]);
+            let (term, gain) = term(s.weight[k], s.share[k], s.inverse[k], s.over_z[k]);
             value[k] += term;
             // Below the LTC's own horizon q stays 0.
-            let a = if s.w[2][k] > 0.0 { -by_share * s.over_z[k] } else { 0.0 };
+            let a = if s.w[2][k] > 0.0 { gain } else { 0.0 };
             let b = 4.0 * a * s.w[2][k] * s.inverse_square[k];
             covered[k] += a * s.w[2][k];
             let rows = [-b * s.w[0][k], -b * s.w[1][k], a - b * s.w[2][k]];
-            let l = [lobe.x[i + k], lobe.y[i + k], lobe.z[i + k]];
             for r in 0..3 {
                 for c in 0..3 {
-                    outer[r][c][k] += rows[r] * l[c];
+                    outer[r][c][k] += rows[r] * s.l[c][k];
                 }
             }
         }
@@ -64,11 +59,15 @@ struct Kernel {
     scale: f64,
 }
 
-/// `LANES` samples: `w = B ω`, `1/|w|²`, `share / w_z`.
+/// `LANES` samples: `ω`, its weight and `1/(N pdf)`, `w = B ω`, `1/|w|²`, `inverse · q / w_z`, `inverse · q`.
 struct Sample {
+    l: [Lanes; 3],
+    weight: Lanes,
+    inverse: Lanes,
     w: [Lanes; 3],
     inverse_square: Lanes,
     over_z: Lanes,
+    share: Lanes,
 }
 
 impl Kernel {
@@ -85,17 +84,23 @@ impl Kernel {
     /// `q = z₊ |det B| / (π |w|⁴)` (2016 paper, eq. 1).
     #[inline(always)]
     fn sample(&self, lobe: &Lobe, i: usize) -> Sample {
-        let range = i..i + LANES;
-        let (x, y, z) = (&lobe.x[range.clone()], &lobe.y[range.clone()], &lobe.z[range.clone()]);
-        let inverse = &lobe.inverse[range];
-        let mut s = Sample { w: [[0.0; LANES]; 3], inverse_square: [0.0; LANES], over_z: [0.0; LANES] };
+        let lanes = |array: &[f64]| -> Lanes {
+            let array = &array[i..i + LANES];
+            core::array::from_fn(|k| array[k])
+        };
+        let l = [lanes(&lobe.x), lanes(&lobe.y), lanes(&lobe.z)];
+        let (weight, inverse) = (lanes(&lobe.weight), lanes(&lobe.inverse));
+        let zero = [0.0; LANES];
+        let mut s =
+            Sample { l, weight, inverse, w: [zero; 3], inverse_square: zero, over_z: zero, share: zero };
         for k in 0..LANES {
             for r in 0..3 {
-                s.w[r][k] = self.rows[r].x * x[k] + self.rows[r].y * y[k] + self.rows[r].z * z[k];
+                s.w[r][k] = self.rows[r].x * l[0][k] + self.rows[r].y * l[1][k] + self.rows[r].z * l[2][k];
             }
             let square = s.w[0][k] * s.w[0][k] + s.w[1][k] * s.w[1][k] + s.w[2][k] * s.w[2][k];
             s.inverse_square[k] = 1.0 / square;
             s.over_z[k] = inverse[k] * self.scale * s.inverse_square[k] * s.inverse_square[k];
+            s.share[k] = s.over_z[k] * s.w[2][k].max(0.0);
         }
         s
     }

@@ -37,8 +37,11 @@ pub fn kl(lobe: &Lobe, m: DMat3) -> f64 {
 
 /// The same, and its derivative by every entry of `M`.
 pub fn kl_gradient(lobe: &Lobe, m: DMat3) -> (f64, DMat3) {
-    kernel::sum_with_gradient(lobe, m, |weight, share, _| term(weight, share))
-        .unwrap_or((-KL_FLOOR.ln(), DMat3::ZERO))
+    kernel::sum_with_gradient(lobe, m, |weight, share, _, scale| {
+        let (value, by_share) = term(weight, share);
+        (value, -by_share * scale)
+    })
+    .unwrap_or((-KL_FLOOR.ln(), DMat3::ZERO))
 }
 
 fn term(weight: f64, share: f64) -> (f64, f64) {

@@ -28,12 +28,13 @@ pub fn l3(lobe: &Lobe, m: DMat3) -> f64 {
 
 /// The same, and its derivative by every entry of `M`.
 pub fn l3_gradient(lobe: &Lobe, m: DMat3) -> (f64, DMat3) {
-    let error = |weight: f64, share: f64, inverse| {
+    let error = |weight: f64, share: f64, inverse, scale: f64| {
         let excess = weight - share;
-        (over_square(excess.abs().powi(3), inverse), over_square(-3.0 * excess.abs() * excess, inverse))
+        let gain = 3.0 * excess.abs() * excess * scale;
+        (over_square(excess.abs().powi(3), inverse), over_square(gain, inverse))
     };
-    let cube = |_, share: f64, inverse| {
-        (over_square(share.powi(3), inverse), over_square(3.0 * share * share, inverse))
+    let cube = |_, share: f64, inverse, scale: f64| {
+        (over_square(share.powi(3), inverse), over_square(-3.0 * share * share * scale, inverse))
     };
     let (Some((mut value, mut gradient)), Some((seen, seen_gradient))) =
         (kernel::sum_with_gradient(lobe, m, error), kernel::sum_with_gradient(lobe, m, cube))

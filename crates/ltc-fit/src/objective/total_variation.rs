@@ -15,9 +15,9 @@ pub fn total_variation(lobe: &Lobe, m: DMat3) -> f64 {
 /// The same, and its derivative by every entry of `M`.
 pub fn total_variation_gradient(lobe: &Lobe, m: DMat3) -> (f64, DMat3) {
     // Only where p > q does the value change with q.
-    let term = |weight: f64, share: f64, _| {
+    let term = |weight: f64, share: f64, _, scale: f64| {
         let excess = weight - share;
-        (excess.max(0.0), if excess > 0.0 { -1.0 } else { 0.0 })
+        (excess.max(0.0), if excess > 0.0 { scale } else { 0.0 })
     };
     kernel::sum_with_gradient(lobe, m, term).unwrap_or((1.0, DMat3::ZERO))
 }

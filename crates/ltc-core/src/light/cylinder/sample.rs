@@ -1,4 +1,4 @@
-//! Sampling a cylinder by the area of what is seen of it.
+//! Sampling what is seen of a cylinder.
 
 use core::f64::consts::PI;
 
@@ -10,8 +10,9 @@ use crate::light::wide::{narrowed, widened};
 use crate::light::{LightSample, SampleLight};
 use crate::{Real, Vector as _};
 
-/// Uniform over the area that faces the shading point: the mantle between the two generators that are seen edge-on, and with
-/// caps the end that faces it. From inside a closed cylinder uniform over all directions.
+/// The mantle uniform in the azimuth around the axis' direction, and for each azimuth uniform in the sine of the elevation
+/// between the ends: `pdf = 1/(Δφ Δ(sin E))`, bounded also where the mantle is seen edge-on. An end uniform over its area.
+/// Mantle and end are chosen by their areas. From inside a closed cylinder uniform over all directions.
 impl<R: Real> SampleLight<R> for Cylinder<R> {
     fn sample(&self, u: [R; 2]) -> Option<LightSample<R>> {
         let (sample, unit) = self.view().sample(self.caps, u.map(R::to_f64))?;
@@ -112,14 +113,33 @@ impl End {
     }
 }
 
+/// The mantle in one direction of the plane across the axis.
+struct Slice {
+    /// Unit vector, at right angles to the axis.
+    flat: DVec3,
+    /// How far the mantle is along it.
+    reach: f64,
+    /// Sines of the ends' elevations.
+    sines: [f64; 2],
+}
+
 impl Beside {
-    /// Half the angle around the axis that is seen of the mantle.
-    fn half_angle(&self) -> f64 {
-        self.tangent.atan2(self.axis.radius)
+    /// Half the azimuth that the mantle spans.
+    fn half_azimuth(&self) -> f64 {
+        self.axis.radius.atan2(self.tangent)
     }
 
-    fn mantle_area(&self) -> f64 {
-        2.0 * self.half_angle() * self.axis.radius * (self.axis.ends[1] - self.axis.ends[0])
+    /// In the direction `towards · cos + aside · sin`; `None` beside the mantle.
+    fn slice(&self, [cos, sin]: [f64; 2]) -> Option<Slice> {
+        let (radius, miss) = (self.axis.radius, self.distance * sin);
+        if cos <= 0.0 || miss.abs() > radius {
+            return None;
+        }
+        // The smaller root of t² − 2 t D cos + (D² − r²), by its stable form.
+        let half_chord = ((radius - miss) * (radius + miss)).sqrt();
+        let reach = self.tangent.powi(2) / (self.distance * cos + half_chord);
+        let sines = self.axis.ends.map(|z| z / z.hypot(reach));
+        Some(Slice { flat: self.towards * cos + self.aside * sin, reach, sines })
     }
 
     /// The end that is seen.
@@ -128,57 +148,48 @@ impl Beside {
         Some(self.end(height))
     }
 
-    fn area(&self, caps: bool) -> f64 {
-        self.mantle_area() + self.facing_end(caps).map_or(0.0, |end| end.area())
+    /// The probability to sample the mantle.
+    fn mantle_share(&self, caps: bool) -> f64 {
+        let half_angle = self.tangent.atan2(self.axis.radius);
+        let mantle = 2.0 * half_angle * self.axis.radius * (self.axis.ends[1] - self.axis.ends[0]);
+        mantle / (mantle + self.facing_end(caps).map_or(0.0, |end| end.area()))
     }
 
     fn sample(&self, caps: bool, u: [f64; 2]) -> Option<LightSample<f64>> {
-        let (area, mantle) = (self.area(caps), self.mantle_area());
-        let at = u[0] * area;
-        let (point, normal) = match self.facing_end(caps) {
-            Some(end) if at >= mantle => {
-                let rest = ((at - mantle) / (area - mantle)).clamp(0.0, 1.0);
-                (end.point([rest, u[1]]), end.normal()?)
-            }
-            _ => {
-                let [low, high] = self.axis.ends;
-                let angle = (2.0 * u[1] - 1.0) * self.half_angle();
-                let (sin, cos) = angle.sin_cos();
-                let normal = self.aside * sin - self.towards * cos;
-                let height = low + (high - low) * (at / mantle).min(1.0);
-                (self.axis.offset + self.axis.along * height + normal * self.axis.radius, normal)
-            }
-        };
-        LightSample::<f64>::of_area(point, normal, area)
+        let share = self.mantle_share(caps);
+        if u[0] >= share {
+            let rest = ((u[0] - share) / (1.0 - share)).clamp(0.0, 1.0);
+            let end = self.facing_end(caps)?;
+            let sample = LightSample::<f64>::of_area(end.point([rest, u[1]]), end.normal()?, end.area())?;
+            return Some(LightSample { pdf: sample.pdf * (1.0 - share), ..sample });
+        }
+        let (sin, cos) = ((2.0 * u[1] - 1.0) * self.half_azimuth()).sin_cos();
+        let slice = self.slice([cos, sin])?;
+        let [low, high] = slice.sines;
+        let sine = low + (high - low) * (u[0] / share);
+        let cosine = ((1.0 - sine) * (1.0 + sine)).max(0.0).sqrt();
+        let wi = (slice.flat * cosine + self.axis.along * sine).try_unit()?;
+        let (distance, pdf) = (slice.reach / cosine, share * self.slice_pdf(&slice));
+        (distance.is_finite() && pdf.is_finite()).then_some(LightSample { wi, distance, pdf })
+    }
+
+    fn slice_pdf(&self, slice: &Slice) -> f64 {
+        1.0 / (2.0 * self.half_azimuth() * (slice.sines[1] - slice.sines[0]))
     }
 
     fn pdf(&self, caps: bool, wi: DVec3) -> Option<f64> {
-        let area = self.area(caps);
-        let (point, normal) = match self.mantle_hit(wi) {
-            Some(hit) => hit,
+        let share = self.mantle_share(caps);
+        let flat = [wi.dot(self.towards), wi.dot(self.aside)];
+        let length = flat[0].hypot(flat[1]);
+        let sine = wi.dot(self.axis.along);
+        let slice = if length > 0.0 { self.slice(flat.map(|x| x / length)) } else { None };
+        match slice.filter(|slice| (slice.sines[0]..=slice.sines[1]).contains(&sine)) {
+            Some(slice) => Some(share * self.slice_pdf(&slice)),
             None => {
                 let end = self.facing_end(caps)?;
-                (end.hit(wi)?, end.normal()?)
+                let sample = LightSample::<f64>::of_area(end.hit(wi)?, end.normal()?, end.area())?;
+                Some((1.0 - share) * sample.pdf)
             }
-        };
-        Some(LightSample::<f64>::of_area(point, normal, area)?.pdf)
-    }
-
-    /// Where the ray along `wi` enters the mantle, and the normal there. `None` where it does so beyond an end or not at
-    /// all.
-    fn mantle_hit(&self, wi: DVec3) -> Option<(DVec3, DVec3)> {
-        let (ahead, beside) = (wi.dot(self.towards), wi.dot(self.aside));
-        let flat_squared = ahead.powi(2) + beside.powi(2);
-        let miss = self.distance * beside;
-        let inside = flat_squared * self.axis.radius.powi(2) - miss.powi(2);
-        if !(inside >= 0.0 && ahead > 0.0) {
-            return None;
         }
-        // The smaller root of t² f − 2 t D a + (D² − r²), by its stable form.
-        let t = self.tangent.powi(2) / (self.distance * ahead + inside.sqrt());
-        let height = t * wi.dot(self.axis.along);
-        let [low, high] = self.axis.ends;
-        let normal = (wi - self.axis.along * wi.dot(self.axis.along)) * t - self.axis.offset;
-        (height >= low && height <= high).then_some((wi * t, normal * (1.0 / self.axis.radius)))
     }
 }
