@@ -9,8 +9,9 @@ use crate::step::Steps;
 use crate::workspace::{Profile, Workspace};
 
 /// The presets that are shipped.
-const PRESETS: [&str; 6] = [
+const PRESETS: [&str; 7] = [
     "ggx-isotropic",
+    "ggx-isotropic-dropin",
     "ggx-anisotropic",
     "beckmann-isotropic",
     "disney-diffuse",

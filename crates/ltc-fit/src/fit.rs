@@ -2,7 +2,7 @@
 
 use ltc_table::{BrdfInfo, ChannelInfo, Errors, Manifest, Table, TableVersion, digest::digest};
 
-use crate::{Brdf, FitError, FitRun, FitSpec, Fitted, Observer, Plan};
+use crate::{Brdf, FitError, FitRun, FitSpec, Fitted, Layout, Observer, Plan};
 
 /// What names the program in manifests.
 const TOOL: &str = concat!("ltc-fit ", env!("CARGO_PKG_VERSION"));
@@ -68,9 +68,7 @@ pub fn publish_with(
         axes: spec.axes.clone(),
         channels: channel_infos(),
         lobes: 1,
-        normalisation: "scale and rotation of each matrix are part of the fit, for interpolation of m; its lobe does not \
-                        depend on them"
-            .to_owned(),
+        normalisation: normalisation(spec.joint.layout).to_owned(),
         handedness: "right-handed frame, x = tangent (alpha_x), z = normal; m maps cosine space to the lobe; det m > 0"
             .to_owned(),
         floors: spec.floors.clone(),
@@ -85,6 +83,18 @@ pub fn publish_with(
         licence: "CC0-1.0".to_owned(),
     };
     Ok(TableVersion::new(manifest, payload)?)
+}
+
+fn normalisation(layout: Layout) -> &'static str {
+    match layout {
+        Layout::Matrix => {
+            "scale and rotation of each matrix are part of the fit, for interpolation of m; its lobe does not depend on them"
+        }
+        Layout::DropIn => {
+            "fitted for interpolation of the inverse of m divided by its middle entry, as engines do (ltc_1, ltc_2); scale of m is of \
+             no consequence"
+        }
+    }
 }
 
 pub(crate) fn channel_infos() -> Vec<ChannelInfo> {

@@ -4,19 +4,22 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
-use ltc_table::{Channels, Part, Precision, Quantity, files, ktx2, npz};
+use ltc_table::{Channels, DropIn, Part, Precision, Quantity, Table, drop_in::Language, files, ktx2, npz};
 
 use crate::tables::Tables;
 
 /// Writes a table in a format that an engine or NumPy reads.
 ///
 /// Example: ltc export ggx-anisotropic --format ktx2 --precision f16 -o ggx.ktx2
+///
+/// Example: ltc export ggx-isotropic-dropin --format dropin-dds --precision f16 -o textures
 #[derive(Args)]
 pub struct Export {
     /// NAME, NAME@VERSION or a digest.
     #[arg(value_name = "TABLE")]
     table: String,
     /// npz: NumPy arrays. ktx2: a texture, three RGBA groups (m00 m01 m02 m10 | m11 m12 m20 m21 | m22 magnitude fresnel 0).
+    /// dropin-dds: the two textures that engines ship, DIR/ltc_1.dds and DIR/ltc_2.dds. dropin-c, dropin-js: the same as source.
     #[arg(long, value_enum)]
     format: Format,
     /// Number format; f64 for npz alone.
@@ -28,7 +31,7 @@ pub struct Export {
     /// Keeps only the nodes around a range of an axis: theta, phi, alpha or lambda = LOW..HIGH. May be repeated.
     #[arg(long, value_name = "AXIS=LOW..HIGH", value_parser = parse_crop)]
     crop: Vec<Crop>,
-    /// File to write.
+    /// File to write; a folder for dropin-dds.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Prints what was written as JSON.
@@ -40,6 +43,9 @@ pub struct Export {
 enum Format {
     Npz,
     Ktx2,
+    DropinDds,
+    DropinC,
+    DropinJs,
 }
 
 /// A range of an axis.
@@ -47,27 +53,55 @@ type Crop = (Quantity, [f64; 2]);
 
 impl Export {
     pub fn run(self, tables: &Tables) -> Result<()> {
+        if self.format != Format::Npz && self.channels.is_some() {
+            bail!("--channels is for npz; other formats always hold m, magnitude and fresnel")
+        }
         let catalogue = tables.catalogue()?;
         let version = catalogue.find(&self.table)?;
         let part = Part(self.crop.clone());
         let table = part.of(version.table())?;
+        if let Some(files) = self.drop_in(&table)? {
+            return self.write_all(&files, &table);
+        }
         let bytes = match self.format {
             Format::Npz => npz::write(&table, self.precision, self.channels.unwrap_or(Channels::ALL))?,
-            Format::Ktx2 if self.channels.is_some() => {
-                bail!("--channels is for npz; a ktx2 always holds m, magnitude and fresnel")
-            }
-            Format::Ktx2 => ktx2::write(&table, self.precision, &part.manifest(version, &table)?)?,
+            _ => ktx2::write(&table, self.precision, &part.manifest(version, &table)?)?,
         };
-        files::write_atomically(&self.output, &bytes)?;
-        let (path, shape) = (self.output.display().to_string(), table.shape());
-        if self.json {
-            let digest = ltc_table::digest::digest(&bytes);
-            outln!(
-                "{}",
-                serde_json::json!({ "file": path, "bytes": bytes.len(), "shape": shape, "digest": digest })
-            );
-        } else {
-            outln!("{path}: {} bytes, shape {shape:?}", bytes.len());
+        self.write_all(&[(self.output.clone(), bytes)], &table)
+    }
+
+    /// The files of a drop-in, if that is what is asked for.
+    fn drop_in(&self, table: &Table) -> Result<Option<Vec<(PathBuf, Vec<u8>)>>> {
+        let text = |language| -> Result<_> {
+            if self.precision != Precision::F32 {
+                bail!("source text is in f32; --precision is for files of numbers")
+            }
+            Ok(vec![(self.output.clone(), DropIn::of(table)?.text(language)?.into_bytes())])
+        };
+        let files = match self.format {
+            Format::Npz | Format::Ktx2 => return Ok(None),
+            Format::DropinDds => {
+                let [ltc_1, ltc_2] = DropIn::of(table)?.dds(self.precision)?;
+                std::fs::create_dir_all(&self.output).with_context(|| self.output.display().to_string())?;
+                vec![(self.output.join("ltc_1.dds"), ltc_1), (self.output.join("ltc_2.dds"), ltc_2)]
+            }
+            Format::DropinC => text(Language::C)?,
+            Format::DropinJs => text(Language::JavaScript)?,
+        };
+        Ok(Some(files))
+    }
+
+    fn write_all(&self, written: &[(PathBuf, Vec<u8>)], table: &Table) -> Result<()> {
+        let shape = table.shape();
+        for (path, bytes) in written {
+            files::write_atomically(path, bytes)?;
+            let (path, digest) = (path.display().to_string(), ltc_table::digest::digest(bytes));
+            if self.json {
+                let file = serde_json::json!({ "file": path, "bytes": bytes.len(), "shape": shape, "digest": digest });
+                outln!("{file}");
+            } else {
+                outln!("{path}: {} bytes, shape {shape:?}", bytes.len());
+            }
         }
         Ok(())
     }
