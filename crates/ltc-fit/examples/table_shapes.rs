@@ -34,7 +34,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         eprintln!("{}", shape.name);
         outcomes.push(outcome(shape)?);
     }
-    println!("| table | axes | entries | f16 texture | mean TV | p95 | max | α<0.14 | α≥0.14 | n mean / max | f mean / max | fit |");
+    println!(
+        "| table | axes | entries | f16 texture | mean TV | p95 | max | α<0.14 | α≥0.14 | n mean / max | f mean / max | fit |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
     for outcome in &outcomes {
         println!("{}", outcome.row);
