@@ -9,10 +9,12 @@ use std::hint::black_box;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DMat3, DVec3};
+use ltc_benches::stability::{Case, oracle};
 use ltc_core::points::SplitMix64;
 use ltc_core::{
-    Cubic, EdgeForm, Exact, Horizon, Light as _, Ltc, LtcBatch, Matrix as _, Polygon, PublishedRational,
-    Quad, QuadBatch, Rational, Real, Sides, Vector as _,
+    AnyLight, Cubic, Cylinder, Disk, EdgeForm, Ellipse, Exact, Horizon, Light, Line, Ltc, LtcBatch,
+    Matrix as _, Polygon, PublishedRational, Quad, QuadBatch, Rational, Real, Sides, Sphere, Strip,
+    Vector as _,
 };
 use ltc_fit::draw;
 use ltc_reference::{LtcLobe, PolygonOptions, Tolerance, integrate_polygon_boundary};
@@ -160,6 +162,67 @@ fn leaky(vertices: &[glam::Vec3; 4], ltc: &Ltc<f32>) -> f32 {
     Quad::new(*vertices, Sides::Two).map_or(0.0, |q| q.integrate_within(ltc, Horizon::COSINE))
 }
 
+/// A vector whose numbers `f32` holds.
+fn vector<R: Real>(p: [f64; 3]) -> R::Vec3 {
+    let [x, y, z] = p.map(|x| R::of(f64::from(x as f32)));
+    R::Vec3::new(x, y, z)
+}
+
+/// Half-widths of thin lights, and radii of tubes.
+const THIN: f64 = 0.03125;
+const WIDE: f64 = 0.25;
+
+/// One light of each shape in the place of a rectangle: line, strip, cylinder, disk, ellipse, sphere.
+fn shapes(l: &Placed) -> [AnyLight; 6] {
+    let (p0, p1) = ((l.centre - l.u).to_array(), (l.centre + l.u).to_array());
+    let (center, normal, sides) = (l.centre.to_array(), (-l.centre).to_array(), Sides::Two);
+    let (axis_u, axis_v, radius) = (l.u.to_array(), (l.v * 0.5).to_array(), l.u.length());
+    [
+        AnyLight::Line { p0, p1, radius: THIN },
+        AnyLight::Strip { p0, p1, width: 2.0 * THIN, normal, sides },
+        AnyLight::Cylinder { p0, p1, radius: WIDE, caps: true },
+        AnyLight::Disk { center, normal, radius, sides },
+        AnyLight::Ellipse { center, axis_u, axis_v, sides },
+        AnyLight::Sphere { center, radius },
+    ]
+}
+
+/// The light ready made in a precision.
+fn ready<R: Real>(light: &AnyLight) -> Box<dyn Light<R>> {
+    const SOUND: &str = "lights of the scene are sound";
+    let (v, r) = (|p: &[f64; 3]| vector::<R>(*p), |x: &f64| R::of(f64::from(*x as f32)));
+    match light {
+        AnyLight::Line { p0, p1, radius } => Box::new(Line::new(v(p0), v(p1), r(radius)).expect(SOUND)),
+        AnyLight::Strip { p0, p1, width, normal, sides } => {
+            Box::new(Strip::new(v(p0), v(p1), r(width), v(normal), *sides).expect(SOUND))
+        }
+        AnyLight::Cylinder { p0, p1, radius, caps } => {
+            Box::new(Cylinder::new(v(p0), v(p1), r(radius), *caps).expect(SOUND))
+        }
+        AnyLight::Disk { center, normal, radius, sides } => {
+            Box::new(Disk::new(v(center), v(normal), r(radius), *sides).expect(SOUND))
+        }
+        AnyLight::Ellipse { center, axis_u, axis_v, sides } => {
+            Box::new(Ellipse::new(v(center), v(axis_u), v(axis_v), *sides).expect(SOUND))
+        }
+        AnyLight::Sphere { center, radius } => Box::new(Sphere::new(v(center), r(radius)).expect(SOUND)),
+        AnyLight::Polygon { .. } => unreachable!("polygons have benches of their own"),
+    }
+}
+
+fn other_shapes(group: &mut BenchmarkGroup<'_, WallTime>, scene: &Scene, l64: &[Ltc<f64>], l32: &[Ltc<f32>]) {
+    let lights: Vec<[AnyLight; 6]> = scene.lights.iter().map(shapes).collect();
+    for k in 0..6 {
+        let name = lights[0][k].name();
+        let cases = scene.lobes.iter().zip(&lights).map(|(m, l)| Case::new(*m, l[k].clone(), false));
+        let truth: Vec<f64> = cases.map(|case| oracle(&case)).collect();
+        let double: Vec<_> = lights.iter().map(|l| ready::<f64>(&l[k])).collect();
+        let single: Vec<_> = lights.iter().map(|l| ready::<f32>(&l[k])).collect();
+        form(group, &format!("{name}/f64"), (l64, &double, &truth), 1e-8, |light, ltc| light.integrate(ltc));
+        form(group, &format!("{name}/f32"), (l32, &single, &truth), 1e-3, |light, ltc| light.integrate(ltc));
+    }
+}
+
 fn benches(c: &mut Criterion) {
     let scene = Scene::new();
     let (l64, l32) = (scene.ltcs::<f64>(), scene.ltcs::<f32>());
@@ -194,6 +257,7 @@ fn benches(c: &mut Criterion) {
         form(group, &format!("polygon/{n}/f64"), (&l64, &p64, truth), 1e-9, |p, ltc| polygon(p, ltc));
         form(group, &format!("polygon/{n}/f32"), (&l32, &p32, truth), 1e-4, |p, ltc| polygon(p, ltc));
     }
+    other_shapes(group, &scene, &l64, &l32);
 }
 
 criterion_group!(all, benches);

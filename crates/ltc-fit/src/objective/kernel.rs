@@ -40,6 +40,7 @@ pub fn sum_with_gradient(
             covered[k] += a * s.w[2][k];
             let rows = [-b * s.w[0][k], -b * s.w[1][k], a - b * s.w[2][k]];
             for r in 0..3 {
+                #[expect(clippy::needless_range_loop, reason = "an outer product reads best by its indices")]
                 for c in 0..3 {
                     outer[r][c][k] += rows[r] * s.l[c][k];
                 }
