@@ -102,8 +102,9 @@ fn every_texel_and_every_point_between_is_a_lobe() {
 fn its_albedos_are_right() {
     let catalogue = shipped();
     let version = catalogue.find("ggx-isotropic-dropin").unwrap();
-    let settings = measure::MeasureSettings { queries: 800, samples: 512, seed: 9, layout: Layout::DropIn };
+    let settings = measure::MeasureSettings { queries: 800, samples: 4096, seed: 9, layout: Layout::DropIn };
     let errors = measure::errors(&GgxFamily, version.table(), version.table().cells(), settings).unwrap();
-    assert!(errors.magnitude_mean < 2e-3 && errors.magnitude_max < 1e-2, "{errors:?}");
+    // Above 88° and below α = 0.02 the magnitude turns within one step of the 64 nodes that engines have.
+    assert!(errors.magnitude_mean < 2e-4 && errors.magnitude_max < 1.5e-2, "{errors:?}");
     assert!(errors.fresnel_mean < 2e-3 && errors.fresnel_max < 1e-2, "{errors:?}");
 }

@@ -55,7 +55,8 @@ fn it_tells_its_url_answers_and_stops_in_good_order() {
         let (status, listing) = served.get("/v1/tables");
         assert_eq!(status, 200);
         let listing: serde_json::Value = serde_json::from_str(&listing).unwrap();
-        assert_eq!(listing["tables"][0]["name"], "ggx-anisotropic");
+        let tables = listing["tables"].as_array().unwrap();
+        assert!(tables.iter().any(|table| table["name"] == "ggx-anisotropic"), "{listing}");
         assert_eq!(served.get("/v1/tables/nonesuch").0, 404);
         let lookup = "/v1/tables/ggx-isotropic/versions/latest/lookup?theta=NaN&alpha_x=0.5&alpha_y=0.5";
         let (status, problem) = served.get(lookup);
