@@ -2,7 +2,7 @@
 
 use crate::support::{command, ltc, names_in, text};
 
-const NAMES: [&str; 6] = [
+const NAMES: [&str; 7] = [
     "beckmann-isotropic",
     "charlie-sheen",
     "disney-diffuse",
