@@ -6,8 +6,8 @@ use crate::{Lobe, bfgs::Point};
 
 /// `M = B m` with three or four parameters in `m`, or `M` itself with four; for lobes seen from φ = 0, which mirror in y.
 ///
-/// `B` turns z to the mean direction of the lobe, which is computed and not fitted. Of a lobe's five degrees of freedom under this
-/// symmetry each form leaves some out.
+/// `B` turns z to the mean direction of the lobe, which is computed and not fitted. Under this symmetry a lobe has four degrees of
+/// freedom; of the three with `B` each leaves some out, [`Form::Four`] none but the lobes whose median lies on the horizon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// `m = [[m₁₁, 0, m₁₃], [0, m₂₂, 0], [0, 0, 1]]` (the blog on fitting, "shearing in x").

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     Brdf, FitError, GgxFamily, Layout, Objective, brdf, channels::ChannelSettings, entries::EntrySettings,
-    joint::JointSettings, measure::MeasureSettings,
+    joint::JointSettings, measure::MeasureSettings, objective::WASSERSTEIN_LOBE_SAMPLES,
 };
 
 /// A fit, fully specified: the same specification gives the same digest, whatever the number of threads.
@@ -178,6 +178,12 @@ impl FitSpec {
                 format!("{name} is not refined jointly ({reason}): set joint.steps to 0"),
             );
         }
+        if objective == Objective::SlicedWasserstein && self.entries.samples < WASSERSTEIN_LOBE_SAMPLES {
+            let samples = self.entries.samples;
+            let reason =
+                format!("is {samples}, must be at least {WASSERSTEIN_LOBE_SAMPLES} for sliced_wasserstein");
+            return wrong("entries.samples", format!("{reason}: with fewer, thin lobes collapse to lines"));
+        }
         if self.entries.optimiser.form().is_some() && self.axes.len() != 2 {
             let name = self.entries.optimiser.name();
             return wrong("entries.optimiser", format!("{name} fits isotropic tables (theta, alpha) only"));
@@ -263,6 +269,8 @@ mod tests {
         assert!(
             broken(|s| s.objective = "l2".into()).starts_with("objective: \"l2\" is not known; there are:")
         );
+        let sliced = broken(|s| (s.objective, s.joint.steps) = ("sliced_wasserstein".into(), 0));
+        assert!(sliced.starts_with("entries.samples: is 512, must be at least 2048 for"), "{sliced}");
         assert!(broken(|s| s.objective = "l3".into()).starts_with("objective: l3 is not refined jointly"));
         assert!(
             broken(|s| s.entries.optimiser = Optimiser::NelderMeadFour).starts_with("entries.optimiser: ")

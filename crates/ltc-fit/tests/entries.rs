@@ -45,16 +45,18 @@ fn is_a_lune(goal: &Goal<'_>, start: DMat3, tv: f64) -> bool {
 
 #[test]
 fn no_entry_fails_whatever_the_roughness_and_the_angle() {
-    for (theta, phi, alpha) in domain(150) {
+    for (i, (theta, phi, alpha)) in domain(150).into_iter().enumerate() {
         let lobe = sampled(theta, phi, alpha, 512, [0.5, 0.5]);
         let unseen = sampled(theta, phi, alpha, 2048, [0.1, 0.7]);
         let start = median_start(&lobe, direction(theta, phi), Pattern::General);
         for objective in Objective::ALL {
-            // The slower ones on fewer.
-            if objective == Objective::SlicedWasserstein && theta.to_bits() % 4 != 0 {
+            // It takes longer, and more samples.
+            let sliced = objective == Objective::SlicedWasserstein;
+            if sliced && i % 6 != 0 {
                 continue;
             }
-            let goal = objective.towards(&lobe);
+            let dense = sliced.then(|| sampled(theta, phi, alpha, 2048, [0.5, 0.5]));
+            let goal = objective.towards(dense.as_ref().unwrap_or(&lobe));
             let fit = refine_by(&goal, start, Pattern::General, 150);
             let what = format!("{} θ {theta} φ {phi} {alpha:?}: {fit:?}", objective.name());
             assert!(Ltc::<f64>::new(fit.m).is_ok() && fit.m.is_finite(), "{what}");
@@ -115,7 +117,7 @@ fn restricted_forms_cost_what_they_leave_out() {
     let error =
         |optimiser| mean(&errors(&isotropic_axes(10), &isotropic(optimiser, Objective::TotalVariation)));
     let full = error(Optimiser::QuasiNewton);
-    assert!((error(Optimiser::NelderMead) / full - 1.0).abs() < 0.02, "all five degrees of freedom");
+    assert!((error(Optimiser::NelderMead) / full - 1.0).abs() < 0.02, "all four degrees of freedom");
     for optimiser in [Optimiser::NelderMeadXShear, Optimiser::NelderMeadXyShear, Optimiser::NelderMeadZShear]
     {
         let restricted = error(optimiser);
@@ -186,6 +188,9 @@ fn specifications_choose_the_objective_and_the_method() {
         spec.axes = isotropic_axes(6);
         spec.objective = objective.to_owned();
         spec.entries = EntrySettings { optimiser, ..EntrySettings::new(128, 60) };
+        if objective == "sliced_wasserstein" {
+            spec.entries.samples = 2048;
+        }
         spec.joint.steps = 0;
         (spec.channels.samples, spec.channels.queries) = (256, 500);
         (spec.measure.samples, spec.measure.queries) = (512, 200);

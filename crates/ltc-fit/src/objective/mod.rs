@@ -12,7 +12,9 @@ mod total_variation;
 
 pub use kl::{KL_FLOOR, kl, kl_gradient, kullback_leibler};
 pub use l3::{cube_of_lobe, cube_of_ltc, l3, l3_gradient};
-pub use sliced_wasserstein::{SlicedWasserstein, WASSERSTEIN_AXES, WASSERSTEIN_SAMPLES};
+pub use sliced_wasserstein::{
+    SlicedWasserstein, WASSERSTEIN_AXES, WASSERSTEIN_LOBE_SAMPLES, WASSERSTEIN_SAMPLES,
+};
 pub use total_variation::{total_variation, total_variation_gradient};
 
 /// A measure of how far an LTC is from a lobe, with its gradient in closed form.
