@@ -51,6 +51,9 @@ enum Format {
 /// A range of an axis.
 type Crop = (Quantity, [f64; 2]);
 
+/// Files to write.
+type Files = Vec<(PathBuf, Vec<u8>)>;
+
 impl Export {
     pub fn run(self, tables: &Tables) -> Result<()> {
         if self.format != Format::Npz && self.channels.is_some() {
@@ -71,7 +74,7 @@ impl Export {
     }
 
     /// The files of a drop-in, if that is what is asked for.
-    fn drop_in(&self, table: &Table) -> Result<Option<Vec<(PathBuf, Vec<u8>)>>> {
+    fn drop_in(&self, table: &Table) -> Result<Option<Files>> {
         let text = |language| -> Result<_> {
             if self.precision != Precision::F32 {
                 bail!("source text is in f32; --precision is for files of numbers")
