@@ -1,5 +1,7 @@
 //! The fit's quadrature of magnitude and Fresnel term against adaptive cubature that shares no code with it.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
+
 use ltc_core::Alpha;
 use ltc_core::points::SplitMix64;
 use ltc_fit::{Brdf, DiskRule, GgxFamily, Lobe, direction};

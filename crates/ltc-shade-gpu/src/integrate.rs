@@ -23,7 +23,7 @@ pub struct PolygonJob<'a> {
     pub sides: Sides,
 }
 
-/// The pipelines that integrate polygons: [`ltc_core::Polygon::integrate`] on the device.
+/// The pipelines that integrate polygons: [`ltc_core::Polygon`] on the device.
 #[derive(Debug)]
 pub struct Polygons {
     polygons: Kernel,
