@@ -81,7 +81,7 @@ impl Sheet {
         let y = TOP + self.rows * (SIZE + CAPTION) + 8;
         let ticks = [0.0, 0.01, 0.1, 0.25, 0.5, 1.0_f64];
         let (x, _) = self.corner(0, 0);
-        self.bar(x, y, 280, |t| sequential(t));
+        self.bar(x, y, 280, sequential);
         for tick in ticks {
             self.canvas.write_centred(&tick.to_string(), x + (tick.sqrt() * 280.0) as usize, y + 17, 1, INK);
         }
