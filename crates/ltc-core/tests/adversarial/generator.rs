@@ -127,7 +127,9 @@ impl<'a> Generator<'a> {
         let m = self.matrix();
         self.scale = self.power_of_ten(-6.0, 6.0);
         let sides = Sides::Two;
-        let (p, q, n) = (self.point(), self.point(), [0.0, 0.6, 0.8]);
+        // Numbers of f32: rounding each on its own would give parallel axes an area.
+        let [p, q] = [self.point(), self.point()].map(|p| p.map(|x| f64::from(x as f32)));
+        let n = [0.0, 0.6, 0.8];
         let light = match self.below(8) {
             0 => AnyLight::Polygon { vertices: vec![p; 4], sides },
             1 => AnyLight::Polygon { vertices: vec![p, q, p, q], sides },
