@@ -1,4 +1,4 @@
-// Entry point: deferred shading. One invocation a surface point, one lookup for all of its lights. Needs: frame, polygon,
+// Entry point: deferred shading. One invocation a surface point, one lookup for all of its lights. Needs: frame, lights,
 // fresnel, tables_exact or tables_hardware.
 
 struct SurfacePoint {
@@ -17,24 +17,12 @@ struct SurfacePoint {
     unused_1: f32,
 }
 
-struct RectLight {
-    corner_0: vec3f,
-    two_sided: u32,
-    corner_1: vec3f,
-    unused_0: f32,
-    corner_2: vec3f,
-    unused_1: f32,
-    corner_3: vec3f,
-    unused_2: f32,
-    radiance: vec3f,
-    unused_3: f32,
-}
-
 // Numbers of points and of lights.
 @group(1) @binding(0) var<uniform> counts: vec4u;
 @group(1) @binding(1) var<storage, read> points: array<SurfacePoint>;
-@group(1) @binding(2) var<storage, read> lights: array<RectLight>;
-@group(1) @binding(3) var<storage, read_write> radiance: array<vec4f>;
+@group(1) @binding(2) var<storage, read> lights: array<LightRecord>;
+@group(1) @binding(3) var<storage, read> light_vertices: array<vec4f>;
+@group(1) @binding(4) var<storage, read_write> radiance: array<vec4f>;
 
 // The view direction in the shading frame, lifted onto the horizon where rounding put it below.
 fn view_in_frame(frame: LtcFrame, wo: vec3f) -> vec3f {
@@ -52,22 +40,24 @@ fn shade(point: SurfacePoint) -> vec3f {
     } else {
         found = lookup_anisotropic(wo, point.alpha_x, point.alpha_y);
     }
-    let specular_lobe = ltc_inverse(found.m);
+    let specular_lobe = ltc_lobe(found.m);
     let diffuse_lobe = ltc_cosine();
     let specular = ltc_reflectance(point.f0, point.f90, found.magnitude, found.fresnel);
+    let has_diffuse = any(point.albedo > vec3f(0.0));
     var sum = vec3f(0.0);
     for (var i = 0u; i < counts.y; i++) {
-        let light = lights[i];
-        let two_sided = light.two_sided != 0u;
-        let v0 = ltc_shading_from_world(frame, light.corner_0 - point.position);
-        let v1 = ltc_shading_from_world(frame, light.corner_1 - point.position);
-        let v2 = ltc_shading_from_world(frame, light.corner_2 - point.position);
-        let v3 = ltc_shading_from_world(frame, light.corner_3 - point.position);
-        var reflected = specular * ltc_quad(specular_lobe, v0, v1, v2, v3, two_sided);
-        if any(point.albedo > vec3f(0.0)) {
-            reflected += point.albedo * ltc_quad(diffuse_lobe, v0, v1, v2, v3, two_sided);
+        let light = light_in_frame(lights[i], frame, point.position);
+        // Both lobes by one copy of the lights' code.
+        var lobe = specular_lobe;
+        var reflectance = specular;
+        for (var part = 0; part < 2; part++) {
+            sum += light.radiance * reflectance * light_fraction(lobe, light, frame, point.position);
+            if !has_diffuse {
+                break;
+            }
+            lobe = diffuse_lobe;
+            reflectance = point.albedo;
         }
-        sum += light.radiance * reflected;
     }
     return sum;
 }

@@ -1,0 +1,27 @@
+// Products whose leading digits cancel. No bindings.
+//
+// The twelve leading digits of a factor are split off by a mask, so that products of leading parts are exact whatever a
+// compiler fuses or reorders: no rounding is relied upon.
+
+fn ltc_leading(v: vec3f) -> vec3f {
+    return bitcast<vec3f>(bitcast<vec3u>(v) & vec3u(0xfffff000u));
+}
+
+// a * b - c * d to some 2^-36 of the products.
+fn ltc_product_differences(a: vec3f, b: vec3f, c: vec3f, d: vec3f) -> vec3f {
+    let a_high = ltc_leading(a);
+    let b_high = ltc_leading(b);
+    let c_high = ltc_leading(c);
+    let d_high = ltc_leading(d);
+    let a_low = a - a_high;
+    let b_low = b - b_high;
+    let c_low = c - c_high;
+    let d_low = d - d_high;
+    let middle = (a_high * b_low - c_high * d_low) + (a_low * b_high - c_low * d_high);
+    return (a_high * b_high - c_high * d_high) + (middle + (a_low * b_low - c_low * d_low));
+}
+
+// The cross product, each component to its own last digits where they do not cancel by more than 2^12.
+fn ltc_cross(a: vec3f, b: vec3f) -> vec3f {
+    return ltc_product_differences(a.yzx, b.zxy, a.zxy, b.yzx);
+}
