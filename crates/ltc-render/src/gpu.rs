@@ -1,7 +1,8 @@
 //! LTC shading on the GPU.
 
 use glam::{DVec3, Vec3};
-use ltc_shade_gpu::{Gpu, GpuOptions, RectLight, Shader, TableTextures, Tables};
+use ltc_core::Sides;
+use ltc_shade_gpu::{AreaLight, Gpu, GpuOptions, LightShape, Shader, TableTextures, Tables};
 
 use crate::gbuffer::SurfacePoint;
 use crate::light::Emitter;
@@ -14,7 +15,7 @@ pub(crate) struct GpuBackend {
     shader: Shader,
     isotropic: TableTextures,
     anisotropic: TableTextures,
-    lights: Vec<RectLight>,
+    lights: Vec<AreaLight>,
 }
 
 impl GpuBackend {
@@ -47,11 +48,11 @@ impl Shade for GpuBackend {
     }
 }
 
-fn light(emitter: &Emitter) -> RectLight {
-    RectLight {
-        corners: emitter.corners.map(DVec3::as_vec3),
+fn light(emitter: &Emitter) -> AreaLight {
+    let sides = if emitter.two_sided { Sides::Two } else { Sides::One };
+    AreaLight {
+        shape: LightShape::Quad { corners: emitter.corners.map(DVec3::as_vec3), sides },
         radiance: emitter.radiance.as_vec3(),
-        two_sided: emitter.two_sided,
     }
 }
 

@@ -26,6 +26,8 @@ pub struct GpuOptions {
     pub software_only: bool,
     /// How tables are interpolated.
     pub filtering: Filtering,
+    /// The one back end to look at, as in `WGPU_BACKEND`, which is not asked then.
+    pub backend: Option<&'static str>,
 }
 
 /// What a device says about itself.
@@ -67,7 +69,10 @@ impl Gpu {
     /// [`GpuError::NoAdapter`] with what was tried, [`GpuError::UnknownBackend`], and [`GpuError::NotFilterable`]
     /// for [`Filtering::Hardware`] on a device without it.
     pub fn new(options: GpuOptions) -> Result<Self, GpuError> {
-        let backends = backends()?;
+        let backends = match options.backend {
+            Some(name) => named(name)?,
+            None => backends()?,
+        };
         let descriptor = InstanceDescriptor::new_without_display_handle_from_env();
         let instance = Instance::new(InstanceDescriptor { backends, ..descriptor });
         let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
@@ -143,11 +148,13 @@ impl Gpu {
 fn backends() -> Result<Backends, GpuError> {
     match std::env::var("WGPU_BACKEND") {
         Err(_) => Ok(Backends::all()),
-        Ok(value) => {
-            let chosen = Backends::from_comma_list(&value);
-            if chosen.is_empty() { Err(GpuError::UnknownBackend { value }) } else { Ok(chosen) }
-        }
+        Ok(value) => named(&value),
     }
+}
+
+fn named(list: &str) -> Result<Backends, GpuError> {
+    let chosen = Backends::from_comma_list(list);
+    if chosen.is_empty() { Err(GpuError::UnknownBackend { value: list.to_owned() }) } else { Ok(chosen) }
 }
 
 /// The names of those that were compiled in; of all, where none was.

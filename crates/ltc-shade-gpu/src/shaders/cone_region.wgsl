@@ -226,12 +226,17 @@ fn ltc_region_integral(region: LtcRegion) -> f32 {
     var after_1 = ltc_trail();
     var after_2 = ltc_trail();
     var sum = 0.0;
-    for (var side = 0; side < 2; side++) {
-        var cut: LtcCut;
-        if side == 0 {
-            cut = ltc_cut_piece(region, 1u, entry, exit);
-        } else {
-            cut = ltc_cut_piece(region, 1u, exit, entry);
+    // The arc, the chord, and what closes the outline: one loop, so that the code of a cut stands here once.
+    for (var side = 0; side < 3; side++) {
+        var cut = LtcCut(select(0u, 1u, after_1.started), after_1.first, after_1.first, after_1.first);
+        if side < 2 {
+            var start = entry;
+            var end = exit;
+            if side == 1 {
+                start = exit;
+                end = entry;
+            }
+            cut = ltc_cut_piece(region, 1u, start, end);
         }
         for (var i = 0u; i < cut.count; i++) {
             var piece = cut.first;
@@ -245,9 +250,6 @@ fn ltc_region_integral(region: LtcRegion) -> f32 {
             }
             after_1.previous = piece;
         }
-    }
-    if after_1.started {
-        sum += ltc_add_last(region, &after_2, after_1.previous, after_1.first);
     }
     if after_2.started {
         sum += ltc_piece_integral(region, after_2.previous, after_2.first);

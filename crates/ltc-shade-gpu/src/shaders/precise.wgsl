@@ -25,3 +25,32 @@ fn ltc_product_differences(a: vec3f, b: vec3f, c: vec3f, d: vec3f) -> vec3f {
 fn ltc_cross(a: vec3f, b: vec3f) -> vec3f {
     return ltc_product_differences(a.yzx, b.zxy, a.zxy, b.yzx);
 }
+
+// The nearest multiples of 2^-11. Of numbers up to 1, sums of products of these are exact, whatever their order: what is left
+// beside them is small.
+fn ltc_whole(v: vec3f) -> vec3f {
+    return round(v * 2048.0) * 0.00048828125;
+}
+
+// A vector as a sum, the first part of multiples of 2^-11.
+struct LtcSplit {
+    whole: vec3f,
+    rest: vec3f,
+}
+
+fn ltc_split(v: vec3f) -> LtcSplit {
+    let whole = ltc_whole(v);
+    return LtcSplit(whole, v - whole);
+}
+
+fn ltc_split_sum(large: vec3f, small: vec3f) -> LtcSplit {
+    let whole = ltc_whole(large + small);
+    return LtcSplit(whole, (large - whole) + small);
+}
+
+// |a|^2 - |b|^2 to some 2^-33, coordinates and lengths up to about 1.
+fn ltc_difference_of_squares(a: LtcSplit, b: LtcSplit) -> f32 {
+    let middle = dot(a.whole, a.rest) - dot(b.whole, b.rest);
+    let small = dot(a.rest, a.rest) - dot(b.rest, b.rest);
+    return (dot(a.whole, a.whole) - dot(b.whole, b.whole)) + (2.0 * middle + small);
+}
