@@ -1,5 +1,6 @@
 //! A straight segment seen from the shading point, and the integral along it that all thin lights share.
 
+use super::angle::azimuth;
 use super::{Horizon, LineSample};
 use crate::{Ltc, Matrix, Real, Vector};
 
@@ -121,7 +122,7 @@ fn cosine_integral<R: Real>([q0, q1]: [R::Vec3; 2], sine: R, nearness: R) -> R {
     let bow = if x < R::of(1.0 / 64.0) {
         half_tangent * x * angle_less_sine_series(x)
     } else {
-        sine.atan2(cosine) - sine * inverse
+        azimuth(sine, cosine) - sine * inverse
     };
     nearness * bow + ends
 }
