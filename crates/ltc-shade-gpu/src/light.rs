@@ -34,13 +34,14 @@ pub enum LightShape {
 }
 
 impl From<&AnyLight> for LightShape {
-    /// Rounded to `f32`.
+    /// Rounded to `f32`; a polygon of four vertices is a quad.
     fn from(light: &AnyLight) -> Self {
         let v = |p: &[f64; 3]| Vec3::from_array(p.map(|x| x as f32));
         match light {
-            AnyLight::Polygon { vertices, sides } => {
-                Self::Polygon { vertices: vertices.iter().map(v).collect(), sides: *sides }
-            }
+            AnyLight::Polygon { vertices, sides } => match vertices.as_slice() {
+                [a, b, c, d] => Self::Quad { corners: [a, b, c, d].map(v), sides: *sides },
+                _ => Self::Polygon { vertices: vertices.iter().map(v).collect(), sides: *sides },
+            },
             AnyLight::Line { p0, p1, radius } => {
                 Self::Line { p0: v(p0), p1: v(p1), radius: *radius as f32, caps: false }
             }
