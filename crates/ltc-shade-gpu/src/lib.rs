@@ -2,7 +2,7 @@
 //! deferred shading.
 //!
 //! [`Gpu`] opens a device: hardware where there is one, a software driver otherwise. [`TableTextures`] holds a table there.
-//! [`Lookups`], [`Lights`] and [`Shader`] are compute pipelines over it. Conventions and units are those of
+//! [`Lookups`], [`Lights`] and [`Shader`] are compute pipelines over it, [`Forward`] shades triangles as they are drawn. Conventions and units are those of
 //! [`ltc_core`]; everything on the device is `f32`.
 //!
 //! The WGSL comes in [`modules`]: pure functions that know no bindings, and thin entry points that hold them. A program is
@@ -34,6 +34,7 @@ mod compute;
 mod constants;
 mod device;
 mod error;
+mod forward;
 mod integrate;
 mod layout;
 mod light;
@@ -46,6 +47,7 @@ mod table_textures;
 
 pub use device::{Filtering, Gpu, GpuInfo, GpuOptions};
 pub use error::GpuError;
+pub use forward::{Forward, ForwardMaterial, ForwardVertex, ForwardView};
 pub use integrate::{LightJob, Lights, PolygonJob, Polygons};
 pub use light::{AreaLight, LightShape};
 pub use lookup::{LookupResult, Lookups};

@@ -85,7 +85,9 @@ pub const MODULES: &[Module] = &[
     ),
     module!(false, "integrate_main", ["lights"]),
     module!(false, "lookup_main", ["table"]),
-    module!(false, "shade_main", ["lights", "fresnel", "table"]),
+    module!(false, "shade", ["lights", "fresnel", "table"]),
+    module!(false, "shade_main", ["shade"]),
+    module!(false, "forward_main", ["shade"]),
 ];
 
 /// What the programs of this crate are composed with.
@@ -100,16 +102,20 @@ pub enum Program {
     Lookup(Filtering),
     /// Deferred shading: entry point `main`.
     Shade(Filtering),
+    /// Forward shading: entry points `vertex_main` and `fragment_main`.
+    Forward(Filtering),
 }
 
 impl Program {
     /// Every program there is.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 7] = [
         Self::Integrate,
         Self::Lookup(Filtering::Exact),
         Self::Lookup(Filtering::Hardware),
         Self::Shade(Filtering::Exact),
         Self::Shade(Filtering::Hardware),
+        Self::Forward(Filtering::Exact),
+        Self::Forward(Filtering::Hardware),
     ];
 
     /// The modules to begin with; the rest follows from what they need.
@@ -120,6 +126,8 @@ impl Program {
             Self::Lookup(Filtering::Hardware) => &["tables_hardware", "lookup_main"],
             Self::Shade(Filtering::Exact) => &["tables_exact", "shade_main"],
             Self::Shade(Filtering::Hardware) => &["tables_hardware", "shade_main"],
+            Self::Forward(Filtering::Exact) => &["tables_exact", "forward_main"],
+            Self::Forward(Filtering::Hardware) => &["tables_hardware", "forward_main"],
         }
     }
 
@@ -221,7 +229,9 @@ mod tests {
         for program in Program::ALL {
             let module = validate(&program.source()).unwrap_or_else(|e| panic!("{program:?}: {e}"));
             let names: Vec<_> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
-            assert_eq!(names, ["main"], "{program:?}");
+            let forward = matches!(program, Program::Forward(_));
+            let expected = if forward { vec!["vertex_main", "fragment_main"] } else { vec!["main"] };
+            assert_eq!(names, expected, "{program:?}");
         }
     }
 

@@ -126,7 +126,7 @@ pub(crate) fn bind_group_layout(gpu: &Gpu) -> Result<BindGroupLayout, GpuError> 
     let hardware = gpu.filtering() == Filtering::Hardware;
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
         binding,
-        visibility: ShaderStages::COMPUTE,
+        visibility: ShaderStages::COMPUTE | ShaderStages::FRAGMENT,
         ty,
         count: None,
     };
