@@ -35,6 +35,8 @@ mod constants;
 mod device;
 mod error;
 mod forward;
+#[cfg(test)]
+mod function_tests;
 mod integrate;
 mod layout;
 mod light;
@@ -45,7 +47,7 @@ mod shade;
 mod surface;
 mod table_textures;
 
-pub use device::{Filtering, Gpu, GpuInfo, GpuOptions};
+pub use device::{Filtering, Gpu, GpuInfo, GpuOptions, Texels};
 pub use error::GpuError;
 pub use forward::{Forward, ForwardMaterial, ForwardVertex, ForwardView};
 pub use integrate::{LightJob, Lights, PolygonJob, Polygons};
