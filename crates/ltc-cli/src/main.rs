@@ -45,6 +45,7 @@ enum Command {
     Integrate(commands::integrate::Integrate),
     Export(commands::export::Export),
     Render(commands::render::Render),
+    Bench(commands::bench::Bench),
 }
 
 fn main() -> ExitCode {
@@ -61,6 +62,7 @@ fn main() -> ExitCode {
         Command::Integrate(command) => command.run(tables),
         Command::Export(command) => command.run(tables),
         Command::Render(command) => command.run(tables),
+        Command::Bench(command) => command.run(tables),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
