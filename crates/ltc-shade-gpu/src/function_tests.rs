@@ -82,7 +82,7 @@ fn textures_are_fetched_where_the_cpu_fetches_them() {
         PrefilteredTexture::new(TexelGrid { width: 1, height: 1, colours: &[[1.0; 3]], coverage: None })
             .unwrap();
     for ((m, frame), [u, v, sigma, _]) in frames.iter().zip(results) {
-        let [o, a, b] = frame.map(|p| p.as_dvec3());
+        let [o, a, b] = frame.map(Vec3::as_dvec3);
         let corners = [o, o + a, o + a + b, o + b];
         let light = TexturedPolygon::<f64>::filled(&corners, Sides::Two, &texture).unwrap();
         let expected = light.texture_fetch(&Ltc::new(m.as_dmat3()).unwrap());
