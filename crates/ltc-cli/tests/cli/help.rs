@@ -3,7 +3,17 @@
 use crate::support::ltc;
 
 const VERBS: [&str; 11] = [
-    "serve", "fit", "tables", "inspect", "diff", "verify", "lookup", "integrate", "export", "render", "bench",
+    "serve",
+    "fit",
+    "tables",
+    "inspect",
+    "diff",
+    "verify",
+    "lookup",
+    "integrate",
+    "export",
+    "render",
+    "bench",
 ];
 
 #[test]
