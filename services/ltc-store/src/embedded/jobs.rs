@@ -1,0 +1,249 @@
+//! Jobs in SQLite.
+
+use std::time::Duration;
+
+use async_trait::async_trait;
+use rusqlite::{Connection, OptionalExtension, ToSql, params};
+
+use super::database::failed;
+use super::rows::{self, Json, Name};
+use super::{EmbeddedStore, events, metadata};
+use crate::jobs::{barren, check_same, ended, lost, new_id, no_job};
+use crate::{Claim, Event, Job, JobState, Jobs, MAX_BARREN, NewJob, Outcome, ShardReport, StoreError, clock};
+
+/// Ended jobs that are kept; older ones go with their events when a new one comes.
+const ENDED_KEPT: u32 = 10_000;
+
+#[async_trait]
+impl Jobs for EmbeddedStore {
+    async fn enqueue(&self, job: NewJob, limit: u64) -> Result<(Job, bool), StoreError> {
+        let result = self.database.write(move |db| enqueue(db, job, limit)).await;
+        self.changed();
+        result
+    }
+
+    async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Claim>, StoreError> {
+        // Most looks find nothing, and need not wait for those who write.
+        let (name, now) = (worker.to_owned(), clock::now());
+        if self.database.read(move |db| next(db, &name, now)).await?.is_none() {
+            return Ok(None);
+        }
+        let worker = worker.to_owned();
+        let claim = self.database.write(move |db| claim(db, &worker, lease)).await?;
+        self.changed();
+        Ok(claim)
+    }
+
+    async fn report(&self, claim: &Claim, lease: Duration, shard: ShardReport) -> Result<Job, StoreError> {
+        let claim = (claim.job.id.clone(), claim.attempt);
+        let job = self.database.write(move |db| report(db, &claim, lease, &shard)).await?;
+        self.changed();
+        Ok(job)
+    }
+
+    async fn finish(&self, claim: &Claim, outcome: Outcome) -> Result<Job, StoreError> {
+        let claim = (claim.job.id.clone(), claim.attempt);
+        let job = self.database.write(move |db| finish(db, &claim, outcome)).await?;
+        self.changed();
+        Ok(job)
+    }
+
+    async fn cancel(&self, id: &str) -> Result<Job, StoreError> {
+        let id = id.to_owned();
+        let job = self.database.write(move |db| cancel(db, &id)).await?;
+        self.changed();
+        Ok(job)
+    }
+
+    async fn job(&self, id: &str) -> Result<Job, StoreError> {
+        let id = id.to_owned();
+        self.database.read(move |db| Ok(find(db, &id)?.1)).await
+    }
+
+    async fn jobs(&self, limit: u32) -> Result<Vec<Job>, StoreError> {
+        let sql = format!("SELECT {} FROM jobs ORDER BY seq DESC LIMIT ?", rows::JOB);
+        self.database.read(move |db| metadata::all(db, &sql, [limit], rows::job)).await
+    }
+
+    async fn events(&self, id: &str, after: u64) -> Result<Vec<Event>, StoreError> {
+        let id = id.to_owned();
+        self.database.read(move |db| events::after(db, find(db, &id)?.0, after)).await
+    }
+
+    fn watch(&self) -> tokio::sync::watch::Receiver<u64> {
+        self.changes.subscribe()
+    }
+
+    async fn depth(&self) -> Result<(u64, u64), StoreError> {
+        self.database.read(|db| Ok((count(db, JobState::Queued)?, count(db, JobState::Running)?))).await
+    }
+}
+
+fn count(db: &Connection, state: JobState) -> Result<u64, StoreError> {
+    let sql = match state {
+        JobState::Queued => "SELECT count(*) FROM jobs WHERE state = 'queued'",
+        _ => "SELECT count(*) FROM jobs WHERE state = 'running'",
+    };
+    let count: i64 = db.query_row(sql, [], |row| row.get(0)).map_err(failed)?;
+    Ok(count.unsigned_abs())
+}
+
+/// A job and its number.
+fn one(
+    db: &Connection,
+    condition: &str,
+    value: impl rusqlite::Params,
+) -> Result<Option<(i64, Job)>, StoreError> {
+    let sql = format!("SELECT {} FROM jobs WHERE {condition}", rows::JOB);
+    let mut statement = db.prepare_cached(&sql).map_err(failed)?;
+    statement.query_row(value, |row| Ok((row.get("seq")?, rows::job(row)?))).optional().map_err(failed)
+}
+
+fn find(db: &Connection, id: &str) -> Result<(i64, Job), StoreError> {
+    one(db, "id = ?", [id])?.ok_or_else(|| no_job(id))
+}
+
+/// The job of a claim, if it is still one.
+fn held(db: &Connection, (id, attempt): &(String, u32)) -> Result<(i64, Job), StoreError> {
+    let held = one(db, "id = ? AND attempts = ? AND state = 'running'", params![id, attempt])?;
+    held.ok_or_else(|| lost(id))
+}
+
+/// Changes some columns of a job; it as it is then.
+fn change(db: &Connection, seq: i64, set: &str, values: &[&dyn ToSql]) -> Result<Job, StoreError> {
+    let sql = format!("UPDATE jobs SET {set} WHERE seq = {seq}");
+    db.execute(&sql, values).map_err(failed)?;
+    one(db, "seq = ?", [seq])?
+        .map(|(_, job)| job)
+        .ok_or_else(|| StoreError::Backend("a job went away".to_owned()))
+}
+
+fn enqueue(db: &Connection, job: NewJob, limit: u64) -> Result<(Job, bool), StoreError> {
+    let (owner, key) = job.idempotency.clone().unzip();
+    if let Some((_, there)) = one(db, "owner = ? AND key = ?", params![owner, key])? {
+        check_same(&there.request, &job)?;
+        return Ok((there, false));
+    }
+    if count(db, JobState::Queued)? >= limit {
+        return Err(StoreError::Full { what: "the queue", limit });
+    }
+    let now = clock::now();
+    let (alias, force) = job.alias.clone().unzip();
+    // Numbers of jobs that are gone are not used again.
+    let last = "SELECT coalesce(max(seq), 0) FROM sqlite_sequence WHERE name = 'jobs'";
+    let last: i64 = db.query_row(last, [], |row| row.get(0)).map_err(failed)?;
+    let seq = last + 1;
+    db.execute(
+        "INSERT INTO jobs (seq, id, name, spec, spec_digest, priority, alias, force, owner, key, state, created, updated) \
+         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 'queued', ?, ?)",
+        params![
+            seq,
+            new_id(seq.unsigned_abs())?,
+            job.table,
+            Json(&job.spec),
+            job.spec_digest,
+            job.priority,
+            alias,
+            force.unwrap_or(false),
+            owner,
+            key,
+            now,
+            now
+        ],
+    )
+    .map_err(failed)?;
+    forget_old(db)?;
+    let (seq, job) =
+        one(db, "seq = ?", [seq])?.ok_or_else(|| StoreError::Backend("a job went away".to_owned()))?;
+    events::add_state(db, seq, &job, now)?;
+    Ok((job, true))
+}
+
+fn forget_old(db: &Connection) -> Result<(), StoreError> {
+    let sql = "DELETE FROM jobs WHERE state NOT IN ('queued', 'running') AND seq <= \
+               (SELECT seq FROM jobs WHERE state NOT IN ('queued', 'running') ORDER BY seq DESC LIMIT 1 OFFSET ?)";
+    db.execute(sql, [ENDED_KEPT]).map(drop).map_err(failed)
+}
+
+/// What a worker takes next.
+fn next(db: &Connection, worker: &str, now: i64) -> Result<Option<(i64, u32)>, StoreError> {
+    let sql = "SELECT seq, barren FROM jobs \
+               WHERE state = 'queued' OR (state = 'running' AND (worker = ?1 OR lease <= ?2)) \
+               ORDER BY state = 'running' DESC, priority DESC, seq LIMIT 1";
+    let mut statement = db.prepare_cached(sql).map_err(failed)?;
+    statement.query_row(params![worker, now], |row| Ok((row.get(0)?, row.get(1)?))).optional().map_err(failed)
+}
+
+fn claim(db: &Connection, worker: &str, lease: Duration) -> Result<Option<Claim>, StoreError> {
+    let now = clock::now();
+    while let Some((seq, lost)) = next(db, worker, now)? {
+        if lost >= MAX_BARREN {
+            let set = "state = 'failed', error = ?, updated = ?, worker = NULL, lease = NULL";
+            let job = change(db, seq, set, &[&barren(), &now])?;
+            events::add_state(db, seq, &job, now)?;
+            continue;
+        }
+        let set = "state = 'running', attempts = attempts + 1, barren = barren + 1, worker = ?, lease = ?, updated = ?";
+        let job = change(db, seq, set, &[&worker, &until(now, lease), &now])?;
+        events::add_state(db, seq, &job, now)?;
+        return Ok(Some(Claim { attempt: job.attempts, job }));
+    }
+    Ok(None)
+}
+
+fn until(now: i64, lease: Duration) -> i64 {
+    now.saturating_add(i64::try_from(lease.as_micros()).unwrap_or(i64::MAX))
+}
+
+fn report(
+    db: &Connection,
+    claim: &(String, u32),
+    lease: Duration,
+    shard: &ShardReport,
+) -> Result<Job, StoreError> {
+    let (seq, before) = held(db, claim)?;
+    let now = clock::now();
+    let progress = if shard.progress.is_finite() { shard.progress.clamp(0.0, 1.0) } else { before.progress };
+    let shard = ShardReport { progress, ..shard.clone() };
+    let set = "barren = CASE WHEN ?1 > progress THEN 0 ELSE barren END, progress = ?1, seconds_left = ?2, \
+               tv = coalesce(?3, tv), lease = ?4, updated = ?5";
+    let values: [&dyn ToSql; 5] = [&progress, &shard.seconds_left, &shard.tv, &until(now, lease), &now];
+    let job = change(db, seq, set, &values)?;
+    events::add_report(db, seq, &shard, now)?;
+    Ok(job)
+}
+
+fn finish(db: &Connection, claim: &(String, u32), outcome: Outcome) -> Result<Job, StoreError> {
+    let (seq, before) = held(db, claim)?;
+    let now = clock::now();
+    let released = outcome == Outcome::Released;
+    let (state, version, error, note) = ended(outcome);
+    // Whoever releases a job that is to be cancelled has nothing more to do with it.
+    let state = if released && before.cancel_requested { JobState::Cancelled } else { state };
+    let progress = if state == JobState::Succeeded { 1.0 } else { before.progress };
+    let set = "state = ?, version = ?, error = ?, progress = ?, barren = max(0, barren - ?), updated = ?, \
+               seconds_left = NULL, worker = NULL, lease = NULL";
+    let job = change(db, seq, set, &[&Name(state), &version, &error, &progress, &released, &now])?;
+    if let Some(note) = note {
+        events::add_log(db, seq, &note, now)?;
+    }
+    events::add_state(db, seq, &job, now)?;
+    Ok(job)
+}
+
+fn cancel(db: &Connection, id: &str) -> Result<Job, StoreError> {
+    let (seq, job) = find(db, id)?;
+    let now = clock::now();
+    let set = match job.state {
+        JobState::Cancelled => return Ok(job),
+        JobState::Running if job.cancel_requested => return Ok(job),
+        JobState::Running => "cancel = 1, updated = ?",
+        JobState::Queued => "state = 'cancelled', cancel = 1, updated = ?",
+        JobState::Succeeded | JobState::Failed => {
+            return Err(StoreError::Conflict { reason: format!("the refit {id} has ended already") });
+        }
+    };
+    let job = change(db, seq, set, &[&now])?;
+    events::add_state(db, seq, &job, now)?;
+    Ok(job)
+}
