@@ -160,6 +160,13 @@ pub trait Jobs: Send + Sync {
     /// request.
     async fn enqueue(&self, job: NewJob, limit: u64) -> Result<(Job, bool), StoreError>;
 
+    /// Writes down a job whose result is there already: it is born succeeded, with `note` in its log. A job of the same
+    /// idempotency key is found as by [`Jobs::enqueue`], whatever its state.
+    ///
+    /// # Errors
+    /// [`StoreError::Conflict`] when the key was used with another request.
+    async fn enqueue_done(&self, job: NewJob, version: u32, note: &str) -> Result<(Job, bool), StoreError>;
+
     /// The next job for a worker: one that it has already (no two running workers have the same name, so it was killed over
     /// it), a running one whose lease is over, or the first queued one. A job that [`MAX_BARREN`] attempts in a row were
     /// lost over, without any progress, fails instead.

@@ -23,6 +23,7 @@ pub async fn jobs(make: Make<'_>) {
     a_life(&*make()).await;
     order(&*make()).await;
     idempotency(make()).await;
+    done_from_the_start(&*make()).await;
     the_queue_is_bounded(&*make()).await;
     cancellation(&*make()).await;
     leases_end_and_stale_claims_are_fenced(&*make()).await;
@@ -128,6 +129,21 @@ async fn idempotency(store: Arc<dyn Jobs>) {
         made += u32::from(is_new);
     }
     assert_eq!((ids.len(), made), (1, 1));
+}
+
+async fn done_from_the_start(store: &dyn Jobs) {
+    let keyed = NewJob { idempotency: Some(("me".to_owned(), "1".to_owned())), ..new("a") };
+    let (job, is_new) = store.enqueue_done(keyed.clone(), 3, "there already").await.unwrap();
+    assert_eq!((job.state, job.version, job.progress, is_new), (JobState::Succeeded, Some(3), 1.0, true));
+    assert_eq!(store.claim("w", LONG).await.unwrap(), None);
+    assert_eq!(store.depth().await.unwrap(), (0, 0));
+    assert_eq!(store.enqueue_done(keyed.clone(), 4, "").await.unwrap(), (job.clone(), false));
+    assert_eq!(store.enqueue(keyed.clone(), 9).await.unwrap(), (job.clone(), false));
+    let other = NewJob { priority: 1, ..keyed };
+    assert_eq!(kind(store.enqueue_done(other, 3, "").await), "conflict");
+    let events = store.events(&job.id, 0).await.unwrap();
+    assert_eq!(events.last().unwrap().data["state"], "succeeded");
+    assert!(events.iter().any(|event| event.data["line"] == "there already"));
 }
 
 async fn the_queue_is_bounded(store: &dyn Jobs) {

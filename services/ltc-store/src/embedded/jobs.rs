@@ -22,6 +22,22 @@ impl Jobs for EmbeddedStore {
         result
     }
 
+    async fn enqueue_done(&self, job: NewJob, version: u32, note: &str) -> Result<(Job, bool), StoreError> {
+        let note = note.to_owned();
+        let result = self
+            .database
+            .write(move |db| {
+                if let Some(there) = same_key(db, &job)? {
+                    return Ok((there, false));
+                }
+                let (seq, _) = insert(db, &job)?;
+                Ok((end(db, seq, Outcome::Succeeded { version, note })?, true))
+            })
+            .await;
+        self.changed();
+        result
+    }
+
     async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Claim>, StoreError> {
         // Most looks find nothing, and need not wait for those who write.
         let (name, now) = (worker.to_owned(), clock::now());
@@ -119,44 +135,44 @@ fn change(db: &Connection, seq: i64, set: &str, values: &[&dyn ToSql]) -> Result
 }
 
 fn enqueue(db: &Connection, job: NewJob, limit: u64) -> Result<(Job, bool), StoreError> {
-    let (owner, key) = job.idempotency.clone().unzip();
-    if let Some((_, there)) = one(db, "owner = ? AND key = ?", params![owner, key])? {
-        check_same(&there.request, &job)?;
+    if let Some(there) = same_key(db, &job)? {
         return Ok((there, false));
     }
     if count(db, JobState::Queued)? >= limit {
         return Err(StoreError::Full { what: "the queue", limit });
     }
-    let now = clock::now();
-    let (alias, force) = job.alias.clone().unzip();
+    Ok((insert(db, &job)?.1, true))
+}
+
+/// The job of the same idempotency key.
+fn same_key(db: &Connection, job: &NewJob) -> Result<Option<Job>, StoreError> {
+    let (owner, key) = job.idempotency.as_ref().map(|(owner, key)| (owner, key)).unzip();
+    let Some((_, there)) = one(db, "owner = ? AND key = ?", params![owner, key])? else { return Ok(None) };
+    check_same(&there.request, job)?;
+    Ok(Some(there))
+}
+
+/// A new job and its number, queued.
+fn insert(db: &Connection, job: &NewJob) -> Result<(i64, Job), StoreError> {
     // Numbers of jobs that are gone are not used again.
-    let last = "SELECT coalesce(max(seq), 0) FROM sqlite_sequence WHERE name = 'jobs'";
+    let last = "SELECT coalesce(max(sqlite_sequence.seq), 0) FROM sqlite_sequence WHERE name = 'jobs'";
     let last: i64 = db.query_row(last, [], |row| row.get(0)).map_err(failed)?;
-    let seq = last + 1;
+    let (seq, now) = (last + 1, clock::now());
+    let id = new_id(seq.unsigned_abs())?;
+    let (alias, force) = job.alias.as_ref().map(|(alias, force)| (alias, *force)).unzip();
+    let (owner, key) = job.idempotency.as_ref().map(|(owner, key)| (owner, key)).unzip();
+    let (spec, force) = (Json(&job.spec), force.unwrap_or(false));
+    let NewJob { table, spec_digest, priority, .. } = job;
     db.execute(
         "INSERT INTO jobs (seq, id, name, spec, spec_digest, priority, alias, force, owner, key, state, created, updated) \
          VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 'queued', ?, ?)",
-        params![
-            seq,
-            new_id(seq.unsigned_abs())?,
-            job.table,
-            Json(&job.spec),
-            job.spec_digest,
-            job.priority,
-            alias,
-            force.unwrap_or(false),
-            owner,
-            key,
-            now,
-            now
-        ],
+        params![seq, id, table, spec, spec_digest, priority, alias, force, owner, key, now, now],
     )
     .map_err(failed)?;
     forget_old(db)?;
-    let (seq, job) =
-        one(db, "seq = ?", [seq])?.ok_or_else(|| StoreError::Backend("a job went away".to_owned()))?;
+    let (seq, job) = find(db, &id)?;
     events::add_state(db, seq, &job, now)?;
-    Ok((job, true))
+    Ok((seq, job))
 }
 
 fn forget_old(db: &Connection) -> Result<(), StoreError> {
@@ -215,15 +231,18 @@ fn report(
 
 fn finish(db: &Connection, claim: &(String, u32), outcome: Outcome) -> Result<Job, StoreError> {
     let (seq, before) = held(db, claim)?;
-    let now = clock::now();
-    let released = outcome == Outcome::Released;
-    let (state, version, error, note) = ended(outcome);
     // Whoever releases a job that is to be cancelled has nothing more to do with it.
-    let state = if released && before.cancel_requested { JobState::Cancelled } else { state };
-    let progress = if state == JobState::Succeeded { 1.0 } else { before.progress };
-    let set = "state = ?, version = ?, error = ?, progress = ?, barren = max(0, barren - ?), updated = ?, \
-               seconds_left = NULL, worker = NULL, lease = NULL";
-    let job = change(db, seq, set, &[&Name(state), &version, &error, &progress, &released, &now])?;
+    let cancelled = outcome == Outcome::Released && before.cancel_requested;
+    end(db, seq, if cancelled { Outcome::Cancelled } else { outcome })
+}
+
+fn end(db: &Connection, seq: i64, outcome: Outcome) -> Result<Job, StoreError> {
+    let now = clock::now();
+    let (released, succeeded) = (outcome == Outcome::Released, matches!(outcome, Outcome::Succeeded { .. }));
+    let (state, version, error, note) = ended(outcome);
+    let set = "state = ?, version = ?, error = ?, progress = iif(?, 1.0, progress), barren = max(0, barren - ?), \
+               updated = ?, seconds_left = NULL, worker = NULL, lease = NULL";
+    let job = change(db, seq, set, &[&Name(state), &version, &error, &succeeded, &released, &now])?;
     if let Some(note) = note {
         events::add_log(db, seq, &note, now)?;
     }

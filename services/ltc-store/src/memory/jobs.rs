@@ -48,6 +48,37 @@ impl State {
         self.jobs.iter_mut().find(|kept| kept.job.id == id).ok_or_else(|| no_job(id))
     }
 
+    /// The job of the same idempotency key.
+    fn same_key(&self, job: &NewJob) -> Result<Option<Job>, StoreError> {
+        let same = |kept: &&Kept| kept.job.request.idempotency == job.idempotency;
+        let there = self.jobs.iter().find(same).filter(|_| job.idempotency.is_some());
+        let Some(there) = there else { return Ok(None) };
+        check_same(&there.job.request, job)?;
+        Ok(Some(there.job.clone()))
+    }
+
+    /// A new job, queued.
+    fn insert(&mut self, request: NewJob) -> Result<&mut Kept, StoreError> {
+        let now = clock::rfc3339(clock::now());
+        let job = Job {
+            id: new_id(1 + self.jobs.len() as u64)?,
+            request,
+            state: JobState::Queued,
+            progress: 0.0,
+            seconds_left: None,
+            tv: None,
+            version: None,
+            error: None,
+            attempts: 0,
+            created: now.clone(),
+            updated: now,
+            cancel_requested: false,
+        };
+        let mut kept = Kept { job, events: Vec::new(), holder: None, barren: 0 };
+        kept.state(JobState::Queued);
+        Ok(self.jobs.push_mut(kept))
+    }
+
     fn held(&mut self, claim: &Claim) -> Result<&mut Kept, StoreError> {
         let held = |kept: &Kept| kept.job.state == JobState::Running && kept.job.attempts == claim.attempt;
         let kept = self.job(&claim.job.id).map_err(|_| lost(&claim.job.id))?;
@@ -69,33 +100,26 @@ impl MemoryStore {
 impl Jobs for MemoryStore {
     async fn enqueue(&self, job: NewJob, limit: u64) -> Result<(Job, bool), StoreError> {
         let mut state = self.state();
-        let same =
-            |kept: &&Kept| job.idempotency.is_some() && kept.job.request.idempotency == job.idempotency;
-        if let Some(there) = state.jobs.iter().find(same) {
-            check_same(&there.job.request, &job)?;
-            return Ok((there.job.clone(), false));
+        if let Some(there) = state.same_key(&job)? {
+            return Ok((there, false));
         }
         if state.count(JobState::Queued) >= limit {
             return Err(StoreError::Full { what: "the queue", limit });
         }
-        let now = clock::rfc3339(clock::now());
-        let job = Job {
-            id: new_id(1 + state.jobs.len() as u64)?,
-            request: job,
-            state: JobState::Queued,
-            progress: 0.0,
-            seconds_left: None,
-            tv: None,
-            version: None,
-            error: None,
-            attempts: 0,
-            created: now.clone(),
-            updated: now,
-            cancel_requested: false,
-        };
-        let mut kept = Kept { job, events: Vec::new(), holder: None, barren: 0 };
-        let job = kept.state(JobState::Queued);
-        state.jobs.push(kept);
+        let job = state.insert(job)?.job.clone();
+        self.changed();
+        Ok((job, true))
+    }
+
+    async fn enqueue_done(&self, job: NewJob, version: u32, note: &str) -> Result<(Job, bool), StoreError> {
+        let mut state = self.state();
+        if let Some(there) = state.same_key(&job)? {
+            return Ok((there, false));
+        }
+        let kept = state.insert(job)?;
+        (kept.job.version, kept.job.progress) = (Some(version), 1.0);
+        kept.event(EventKind::Log, json!({ "line": note }));
+        let job = kept.state(JobState::Succeeded);
         self.changed();
         Ok((job, true))
     }
