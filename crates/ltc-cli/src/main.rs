@@ -45,6 +45,9 @@ enum Command {
     Integrate(commands::integrate::Integrate),
     Export(commands::export::Export),
     Render(commands::render::Render),
+    Token(commands::token::Tokens),
+    Backup(commands::backup::Backup),
+    Restore(commands::backup::Restore),
 }
 
 fn main() -> ExitCode {
@@ -61,6 +64,9 @@ fn main() -> ExitCode {
         Command::Integrate(command) => command.run(tables),
         Command::Export(command) => command.run(tables),
         Command::Render(command) => command.run(tables),
+        Command::Token(command) => command.run(),
+        Command::Backup(command) => command.run(),
+        Command::Restore(command) => command.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

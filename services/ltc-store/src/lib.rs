@@ -20,7 +20,7 @@ mod secret;
 mod seed;
 
 pub use blobs::{BlobKind, Blobs};
-pub use embedded::EmbeddedStore;
+pub use embedded::{Contents, EmbeddedStore, back_up, restore};
 pub use error::StoreError;
 pub use jobs::{Claim, Event, EventKind, Job, JobState, Jobs, MAX_BARREN, NewJob, Outcome, ShardReport};
 #[cfg(feature = "testing")]

@@ -1,5 +1,6 @@
 //! One file for each verb.
 
+pub mod backup;
 pub mod diff;
 pub mod export;
 pub mod fit;
@@ -8,4 +9,5 @@ pub mod lookup;
 pub mod render;
 pub mod serve;
 pub mod tables;
+pub mod token;
 pub mod verify;

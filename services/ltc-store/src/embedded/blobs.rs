@@ -14,7 +14,7 @@ use super::{EmbeddedStore, folder, recent::Recent};
 use crate::{BlobKind, Blobs, StoreError, key};
 
 /// Name of the folder of all blobs.
-pub(crate) const BLOBS: &str = "blobs";
+pub(super) const BLOBS: &str = "blobs";
 /// Name of the folder of files that are being written.
 const TEMPORARY: &str = "tmp";
 const KINDS: [BlobKind; 3] = [BlobKind::Payload, BlobKind::Derived, BlobKind::Checkpoint];
@@ -61,6 +61,11 @@ impl Files {
         Ok(files)
     }
 
+    /// Where nothing but reading by key is asked for.
+    pub(super) fn to_read(folder: &Path) -> Self {
+        Self::new(folder, None)
+    }
+
     fn new(folder: &Path, derived_limit: Option<u64>) -> Self {
         let folder = folder.join(BLOBS);
         Self(Arc::new(Inner { folder, derived_limit, derived: Mutex::default() }))
@@ -102,7 +107,7 @@ impl Files {
         self.0.folder.join(TEMPORARY).join(format!("{}-{count}", std::process::id()))
     }
 
-    fn put(&self, kind: BlobKind, key: &str, bytes: &[u8]) -> Result<(), StoreError> {
+    pub(super) fn put(&self, kind: BlobKind, key: &str, bytes: &[u8]) -> Result<(), StoreError> {
         key::check_to_write(kind, key, bytes)?;
         let Some(limit) = self.0.derived_limit else {
             return Err(StoreError::Unwritable { reason: "it was opened read-only".to_owned() });
@@ -131,7 +136,7 @@ impl Files {
         place.exists() && (kind != BlobKind::Payload || self.get(kind, key).is_ok())
     }
 
-    fn get(&self, kind: BlobKind, key: &str) -> Result<Vec<u8>, StoreError> {
+    pub(super) fn get(&self, kind: BlobKind, key: &str) -> Result<Vec<u8>, StoreError> {
         key::check_to_read(key)?;
         let place = self.place(kind, key);
         let mut bytes = Vec::new();

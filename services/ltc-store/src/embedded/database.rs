@@ -43,18 +43,7 @@ impl Database {
 
     /// Opens one whose folder may not be written to.
     pub(super) fn open_read_only(path: &Path) -> Result<Self, StoreError> {
-        let wal = path.with_extension("sqlite-wal");
-        let pending = wal.metadata().is_ok_and(|m| m.len() > 0);
-        let connect = || -> Result<Connection, StoreError> {
-            if pending {
-                return connect(path, read_only());
-            }
-            // Without a log there is nothing that another process could be writing: no lock files are needed.
-            let uri = format!("file:{}?immutable=1", escaped(path));
-            let connection = Connection::open_with_flags(uri, read_only() | OpenFlags::SQLITE_OPEN_URI);
-            connection.map_err(failed)
-        };
-        let readers: Vec<Connection> = (0..READERS).map(|_| connect()).collect::<Result<_, _>>()?;
+        let readers: Vec<Connection> = (0..READERS).map(|_| to_read(path)).collect::<Result<_, _>>()?;
         for reader in &readers {
             let found = schema::found(reader)?;
             if found != schema::known() {
@@ -164,6 +153,23 @@ impl Drop for Lent {
         if let Some(connection) = self.connection.take() {
             lock(&self.idle).push(connection);
         }
+    }
+}
+
+/// A connection that reads, beside others that write or where nobody may.
+pub(super) fn to_read(path: &Path) -> Result<Connection, StoreError> {
+    let pending = path.with_extension("sqlite-wal").metadata().is_ok_and(|m| m.len() > 0);
+    let connection = connect(path, read_only()).and_then(|connection| {
+        schema::found(&connection)?;
+        Ok(connection)
+    });
+    match connection {
+        // Where SQLite may not make its lock files: without a log there is nobody who writes, and no lock is needed.
+        Err(StoreError::Unwritable { .. }) if !pending => {
+            let uri = format!("file:{}?immutable=1", escaped(path));
+            Connection::open_with_flags(uri, read_only() | OpenFlags::SQLITE_OPEN_URI).map_err(failed)
+        }
+        other => other,
     }
 }
 

@@ -1,5 +1,6 @@
 //! The store in one folder: `ltc.sqlite` for what changes, files below `blobs/` for what does not.
 
+mod backup;
 mod blobs;
 mod database;
 mod events;
@@ -17,11 +18,12 @@ use std::sync::Arc;
 use tokio::sync::watch;
 
 use crate::StoreError;
+pub use backup::{Contents, back_up, restore};
 use blobs::Files;
 use database::Database;
 
 /// Name of the database below the folder.
-pub(crate) const DATABASE: &str = "ltc.sqlite";
+const DATABASE: &str = "ltc.sqlite";
 /// Name of the lock that a serving process holds.
 const LOCK: &str = "lock";
 /// Bytes of derived blobs that are kept unless another limit is set.
@@ -88,6 +90,11 @@ impl EmbeddedStore {
         let database = Database::open(&folder.join(DATABASE), &|| lock(folder).map(drop))?;
         let files = Files::attach(folder)?;
         Ok(Self::new(folder, database, files, None))
+    }
+
+    /// Whether there is a store in a folder.
+    pub fn is_in(folder: &Path) -> bool {
+        folder.join(DATABASE).is_file()
     }
 
     fn new(folder: &Path, database: Database, files: Files, lock: Option<Arc<File>>) -> Self {
