@@ -71,7 +71,8 @@ impl Refits {
     /// [`RefitError::Spec`], [`RefitError::TooLarge`]; [`StoreError::Full`] with a full queue; [`StoreError::Conflict`] where
     /// the idempotency key was used with another request.
     pub async fn request(&self, ask: Ask) -> Result<(Job, bool), RefitError> {
-        let Checked { spec, digest, .. } = check(&ask.spec, &self.0.config.limits)?;
+        let Checked { spec, digest, cost } = check(&ask.spec, &self.0.config.limits)?;
+        self.0.config.allows(&cost)?;
         let json = serde_json::to_value(&spec)
             .map_err(|e| RefitError::Spec { field: String::new(), reason: e.to_string() })?;
         let job = NewJob {

@@ -248,7 +248,7 @@ async fn what_cannot_be_fitted_is_refused_before_there_is_a_job() {
     let store = MemoryStore::default();
     let limits = Limits { memory: 1 << 20, seconds: 1e9 };
     let shared = Arc::new(store.clone());
-    let config = RefitConfig { limits, queue: 1, ..config() };
+    let config = RefitConfig { limits, queue: 1, stage_seconds: 5.0, ..config() };
     let refits = Refits::new(shared.clone(), shared.clone(), shared, config);
     let refused = refits.request(Ask::new(json!({ "preset": "ggx-isotropic" }))).await.unwrap_err();
     assert!(matches!(refused, RefitError::TooLarge { .. }), "{refused}");
@@ -256,6 +256,11 @@ async fn what_cannot_be_fitted_is_refused_before_there_is_a_job() {
     odd["joint"]["samples"] = json!(-1);
     let refused = refits.request(Ask::new(odd)).await.unwrap_err();
     assert!(matches!(&refused, RefitError::Spec { field, .. } if field == "joint.samples"), "{refused}");
+    let mut long = spec(1);
+    long["measure"]["samples"] = json!(1 << 20);
+    let refused = refits.request(Ask::new(long)).await.unwrap_err();
+    assert!(matches!(refused, RefitError::TooLarge { .. }), "{refused}");
+    assert!(refused.to_string().contains("lower measure.samples"), "{refused}");
     assert!(store.jobs(9).await.unwrap().is_empty());
     refits.request(Ask::new(spec(1))).await.unwrap();
     let full = refits.request(Ask::new(spec(2))).await.unwrap_err();

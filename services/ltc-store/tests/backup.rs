@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use ltc_store::{
     BlobKind, Blobs, EmbeddedStore, Metadata, NewVersion, Secret, StoreError, VersionState, back_up, restore,
@@ -89,6 +90,7 @@ async fn a_store_that_is_written_to_is_backed_up_as_it_was_at_one_moment() {
         while !stopped.load(Ordering::Relaxed) {
             upload(&writer, number).await;
             number += 1;
+            tokio::time::sleep(Duration::from_millis(5)).await;
         }
         number
     });
@@ -121,12 +123,18 @@ async fn nothing_is_overwritten_and_nothing_is_made_of_nothing() {
     assert!(kind(restore(&backup, &data)).starts_with("Conflict: "));
     assert!(kind(back_up(&folder.path().join("none"), &folder.path().join("a"))).starts_with("NotFound: "));
     assert!(kind(restore(&data, &folder.path().join("b"))).starts_with("NotFound: "), "no backup");
-    // A restore that was cut short is completed by the same command.
+    // What was cut short is completed by the same command.
     let cut = folder.path().join("cut");
     fs::create_dir_all(cut.join("blobs")).unwrap();
-    fs::write(cut.join("restoring.sqlite"), "half").unwrap();
+    assert!(kind(restore(&backup, &cut)).starts_with("Conflict: "), "somebody's own blobs");
+    fs::write(cut.join("unfinished.sqlite"), "half").unwrap();
     restore(&backup, &cut).unwrap();
     EmbeddedStore::open(&cut).unwrap();
+    let cut = folder.path().join("cut backup");
+    fs::create_dir_all(&cut).unwrap();
+    fs::write(cut.join("unfinished.sqlite"), "half").unwrap();
+    back_up(&data, &cut).unwrap();
+    restore(&cut, &folder.path().join("c")).unwrap();
 }
 
 #[tokio::test]

@@ -12,6 +12,8 @@ use serde_json::{Value, json};
 /// Makes, lists and revokes the tokens that let clients write to a service. None exists by default.
 ///
 /// The commands work beside a running service; it sees what they do at once.
+///
+/// Example: ltc token create --data DIR --scope publish
 #[derive(Args)]
 pub struct Tokens {
     #[command(subcommand)]

@@ -1,7 +1,7 @@
 //! Copies of a store, made while it is used.
 
 use std::fs::{self, File};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use ltc_table::digest::digest;
 use rusqlite::{Connection, OpenFlags};
@@ -14,8 +14,8 @@ use crate::{BlobKind, StoreError, clock};
 
 /// Name of the file that says what a backup holds; written last, so that a folder with it is complete.
 const CONTENTS: &str = "backup.json";
-/// Name of the database while a store is restored.
-const RESTORING: &str = "restoring.sqlite";
+/// Name of the database in a folder that is not complete yet.
+const UNFINISHED: &str = "unfinished.sqlite";
 /// The way this program writes backups.
 const FORMAT: u32 = 1;
 
@@ -37,7 +37,7 @@ pub struct Contents {
 /// Copies the store in `store` to the folder `backup`, which must be empty or missing: the database as it is at one moment
 /// (`VACUUM INTO`), and the payload of every version in it. A process may serve from the store meanwhile: payloads are
 /// written before the versions that name them and never change. Derived blobs and checkpoints are left out: the ones are
-/// computed again, without the others a running refit starts anew.
+/// computed again, without the others a running refit starts anew. What was cut short is completed by the same command.
 ///
 /// # Errors
 /// [`StoreError::NotFound`] without a store there; [`StoreError::Conflict`] where `backup` holds something;
@@ -47,11 +47,11 @@ pub fn back_up(store: &Path, backup: &Path) -> Result<Contents, StoreError> {
     if !source.is_file() {
         return Err(StoreError::NotFound { what: "store", name: store.display().to_string() });
     }
-    let backup = empty_folder(backup, &[])?;
-    let target = backup.join(DATABASE);
-    snapshot(&source, &target)?;
-    let bytes = read(&target)?;
-    let (payloads, size) = copy_payloads(&target, &Files::to_read(store), &Files::attach(&backup)?)?;
+    let backup = empty_folder(backup)?;
+    let unfinished = backup.join(UNFINISHED);
+    snapshot(&source, &unfinished)?;
+    let bytes = read(&unfinished)?;
+    let (payloads, size) = copy_payloads(&unfinished, &Files::to_read(store), &Files::attach(backup)?)?;
     let contents = Contents {
         format: FORMAT,
         created: clock::rfc3339(clock::now()),
@@ -59,6 +59,7 @@ pub fn back_up(store: &Path, backup: &Path) -> Result<Contents, StoreError> {
         payloads,
         bytes: size + bytes.len() as u64,
     };
+    complete(backup)?;
     let json = serde_json::to_vec_pretty(&contents).map_err(|e| StoreError::Backend(e.to_string()))?;
     folder::write(&backup.join(format!(".{CONTENTS}")), &backup.join(CONTENTS), &json)?;
     Ok(contents)
@@ -86,41 +87,55 @@ pub fn restore(backup: &Path, store: &Path) -> Result<Contents, StoreError> {
     if found != contents.database {
         return Err(damaged(format!("the digest of its database is {found}, not {}", contents.database)));
     }
-    let store = empty_folder(store, &[BLOBS, RESTORING])?;
-    let restoring = store.join(RESTORING);
-    fs::write(&restoring, &bytes).map_err(|e| folder::failed(&restoring, e))?;
-    let (payloads, _) = copy_payloads(&restoring, &Files::to_read(backup), &Files::attach(&store)?)?;
+    let store = empty_folder(store)?;
+    let unfinished = store.join(UNFINISHED);
+    fs::write(&unfinished, &bytes).map_err(|e| folder::failed(&unfinished, e))?;
+    let (payloads, _) = copy_payloads(&unfinished, &Files::to_read(backup), &Files::attach(store)?)?;
     if payloads != contents.payloads {
         return Err(damaged(format!("it has {payloads} payloads, not {}", contents.payloads)));
     }
-    let place = store.join(DATABASE);
-    let placed = File::open(&restoring).and_then(|file| file.sync_all());
-    let placed = placed.and_then(|()| fs::rename(&restoring, &place)).and_then(|()| folder::sync(&store));
-    placed.map_err(|e| folder::failed(&place, e))?;
+    complete(store)?;
     Ok(contents)
 }
 
-/// The folder, made where it is missing, if there is nothing in it but these.
-fn empty_folder(place: &Path, allowed: &[&str]) -> Result<PathBuf, StoreError> {
+/// Puts the database in its place, now that everything else is.
+fn complete(folder: &Path) -> Result<(), StoreError> {
+    let (unfinished, place) = (folder.join(UNFINISHED), folder.join(DATABASE));
+    let synced = File::open(&unfinished).and_then(|file| file.sync_all());
+    let placed = synced.and_then(|()| fs::rename(&unfinished, &place)).and_then(|()| folder::sync(folder));
+    placed.map_err(|e| folder::failed(&place, e))
+}
+
+/// The folder, made where it is missing, if there is nothing in it but what an earlier try left that was cut short.
+fn empty_folder(place: &Path) -> Result<&Path, StoreError> {
     folder::make(place).map_err(|e| folder::failed(place, e))?;
     let entries = fs::read_dir(place).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-    for entry in entries.map_err(|e| folder::failed(place, e))? {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        // What a file system of its own begins with.
-        if name != "lost+found" && !allowed.contains(&name.as_str()) {
+    let entries = entries.map_err(|e| folder::failed(place, e))?;
+    let names: Vec<String> = entries.iter().map(|e| e.file_name().to_string_lossy().into_owned()).collect();
+    // A file system of its own begins with lost+found. Blobs alone could be anything.
+    let left = |name: &String| [BLOBS, UNFINISHED, "lost+found"].contains(&name.as_str());
+    let odd = names.iter().find(|name| !left(name));
+    let odd = odd.or(names.iter().find(|name| *name == BLOBS && !names.iter().any(|n| n == UNFINISHED)));
+    match odd {
+        Some(name) => {
             let reason = format!("{} is not empty: there is \"{name}\"", place.display());
-            return Err(StoreError::Conflict { reason });
+            Err(StoreError::Conflict { reason })
         }
+        None => Ok(place),
     }
-    Ok(place.to_owned())
 }
 
 /// The database as it is at one moment.
 fn snapshot(source: &Path, target: &Path) -> Result<(), StoreError> {
     let connection = super::database::to_read(source)?;
     schema::found(&connection)?;
-    connection.execute("VACUUM INTO ?", [target.display().to_string()]).map_err(failed)?;
-    File::open(target).and_then(|file| file.sync_all()).map_err(|e| folder::failed(target, e))
+    match fs::remove_file(target) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            return Err(folder::failed(target, error));
+        }
+        _ => {}
+    }
+    connection.execute("VACUUM INTO ?", [target.display().to_string()]).map(drop).map_err(failed)
 }
 
 /// Copies the payloads that a database names; how many, and how many bytes.
