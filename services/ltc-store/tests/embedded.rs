@@ -60,6 +60,36 @@ async fn one_process_serves_and_commands_work_beside_it() {
     EmbeddedStore::open(folder.path()).unwrap();
 }
 
+#[tokio::test(flavor = "multi_thread")]
+async fn two_processes_that_write_at_once_take_turns() {
+    let folder = tempdir().unwrap();
+    let serving = EmbeddedStore::open(folder.path()).unwrap();
+    let command = EmbeddedStore::attach(folder.path()).unwrap();
+    let tasks = [serving.clone(), command].map(|store| {
+        tokio::spawn(async move {
+            for _ in 0..100 {
+                let (token, _) = Secret::generate("x", [].into(), None).unwrap();
+                store.add_token(token).await.unwrap();
+                // Reads before it writes, so that what it read must not go stale.
+                let job = NewJob {
+                    table: "a".to_owned(),
+                    spec: serde_json::json!({}),
+                    spec_digest: String::new(),
+                    priority: 0,
+                    alias: None,
+                    idempotency: None,
+                };
+                store.enqueue(job, 1000).await.unwrap();
+            }
+        })
+    });
+    for task in tasks {
+        task.await.unwrap();
+    }
+    assert_eq!(serving.tokens().await.unwrap().len(), 200);
+    assert_eq!(serving.depth().await.unwrap(), (200, 0));
+}
+
 #[tokio::test]
 async fn what_a_kill_left_half_written_goes_at_the_next_start() {
     let folder = tempdir().unwrap();
