@@ -18,6 +18,9 @@ use tempfile::tempdir;
 /// Kills in each test.
 const KILLS: u32 = 50;
 
+/// Bytes of a derived blob.
+const DERIVED: usize = 2_000_000;
+
 /// A payload of some size, by its number.
 fn payload(number: u64) -> Vec<u8> {
     (0..50_000).map(|i| (i as u64 ^ number) as u8).chain(number.to_le_bytes()).collect()
@@ -48,6 +51,8 @@ async fn child_uploads_and_moves() {
     loop {
         let number = upload(&store, next).await.unwrap();
         println!("{MARK}version {number} {}", digest(&payload(next)));
+        // Derived blobs are named by no digest: only being written whole or not at all keeps them from being served in part.
+        store.put(BlobKind::Derived, &format!("derived-{next}"), &vec![7; DERIVED]).await.unwrap();
         next += 1;
         let alias = store.move_alias("t", "mine", number, None).await.unwrap();
         println!("{MARK}alias {} {number}", alias.revision);
@@ -77,6 +82,7 @@ async fn uploads_and_moves_survive_kills() {
         let there = store.versions().await.unwrap().len();
         assert!(there <= versions.len() + kills, "more than one upload for each kill was not acknowledged");
     }
+    assert!(!EmbeddedStore::open(folder.path()).unwrap().list(BlobKind::Derived).await.unwrap().is_empty());
     assert!(versions.len() > KILLS as usize, "only {} uploads were acknowledged", versions.len());
     assert_eq!(std::fs::read_dir(folder.path().join("blobs/tmp")).unwrap().count(), 0);
 }
@@ -93,6 +99,9 @@ async fn check_uploads(
     }
     for version in &there {
         store.get(BlobKind::Payload, &version.digest).await.unwrap();
+    }
+    for (key, size) in store.list(BlobKind::Derived).await.unwrap() {
+        assert_eq!(size as usize, DERIVED, "{key} is half written");
     }
     let alias = store.aliases().await.unwrap().pop();
     if let (Some((revision, number)), Some(alias)) = (revisions.last_key_value(), alias) {
