@@ -12,6 +12,8 @@ use crate::StoreError;
 
 /// How long a connection waits for another process, such as `ltc token`.
 const BUSY: Duration = Duration::from_secs(10);
+/// Bytes of the log that stay on the disk after it was taken over into the database.
+const LOG_KEPT: u32 = 16 << 20;
 /// Connections that read.
 const READERS: usize = 4;
 
@@ -32,6 +34,7 @@ impl Database {
         let mut writer = connect(path, OpenFlags::default())?;
         writer.pragma_update_and_check(None, "journal_mode", "wal", |_| Ok(())).map_err(failed)?;
         writer.pragma_update(None, "synchronous", "full").map_err(failed)?;
+        writer.pragma_update(None, "journal_size_limit", LOG_KEPT).map_err(failed)?;
         let found = schema::found(&writer)?;
         if found != 0 && found != schema::known() {
             may_migrate()?;
