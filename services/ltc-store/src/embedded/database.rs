@@ -21,7 +21,8 @@ const READERS: usize = 4;
 #[derive(Clone)]
 pub(super) struct Database {
     path: PathBuf,
-    writer: Option<Pool>,
+    /// Or why there is none.
+    writer: Result<Pool, String>,
     readers: Pool,
 }
 
@@ -41,11 +42,11 @@ impl Database {
         }
         schema::migrate(&mut writer)?;
         let readers = (0..READERS).map(|_| connect(path, read_only())).collect::<Result<_, _>>()?;
-        Ok(Self { path: path.to_owned(), writer: Some(Pool::new(vec![writer])), readers: Pool::new(readers) })
+        Ok(Self { path: path.to_owned(), writer: Ok(Pool::new(vec![writer])), readers: Pool::new(readers) })
     }
 
-    /// Opens one whose folder may not be written to.
-    pub(super) fn open_read_only(path: &Path) -> Result<Self, StoreError> {
+    /// Opens one that cannot be written to, for this reason.
+    pub(super) fn open_read_only(path: &Path, reason: &str) -> Result<Self, StoreError> {
         let readers: Vec<Connection> = (0..READERS).map(|_| to_read(path)).collect::<Result<_, _>>()?;
         for reader in &readers {
             let found = schema::found(reader)?;
@@ -55,7 +56,7 @@ impl Database {
                 });
             }
         }
-        Ok(Self { path: path.to_owned(), writer: None, readers: Pool::new(readers) })
+        Ok(Self { path: path.to_owned(), writer: Err(reason.to_owned()), readers: Pool::new(readers) })
     }
 
     /// The file.
@@ -65,7 +66,7 @@ impl Database {
 
     /// Whether it can be written.
     pub(super) fn is_writable(&self) -> bool {
-        self.writer.is_some()
+        self.writer.is_ok()
     }
 
     /// Reads, on a thread where that may take its time. All of it sees one moment.
@@ -101,9 +102,9 @@ impl Database {
     }
 
     fn writer(&self) -> Result<&Pool, StoreError> {
-        self.writer
-            .as_ref()
-            .ok_or_else(|| StoreError::Unwritable { reason: "it was opened read-only".to_owned() })
+        let why =
+            |reason| StoreError::Unwritable { reason: format!("it was opened for reading only: {reason}") };
+        self.writer.as_ref().map_err(why)
     }
 }
 

@@ -60,15 +60,16 @@ impl EmbeddedStore {
     /// # Errors
     /// As [`EmbeddedStore::open`].
     pub fn open_with(folder: &Path, derived_limit: u64) -> Result<Self, StoreError> {
-        match Self::open_for_writing(folder, derived_limit) {
-            Err(StoreError::Unwritable { reason }) => {
-                let database = Database::open_read_only(&folder.join(DATABASE));
-                // What stands in the way of writing is what has to be mended.
-                let database = database.map_err(|_| StoreError::Unwritable { reason })?;
-                let files = Files::read_only(folder)?;
-                Ok(Self::new(folder, database, files, None))
-            }
-            other => other,
+        Self::open_for_writing(folder, derived_limit).or_else(|error| Self::open_to_read(folder, error))
+    }
+
+    /// What can be done where writing fails: a store that is there is read.
+    fn open_to_read(folder: &Path, error: StoreError) -> Result<Self, StoreError> {
+        let StoreError::Unwritable { reason } = &error else { return Err(error) };
+        match Database::open_read_only(&folder.join(DATABASE), reason) {
+            Ok(database) => Ok(Self::new(folder, database, Files::read_only(folder)?, None)),
+            // What stands in the way of writing is what has to be mended.
+            Err(_) => Err(error),
         }
     }
 
@@ -80,16 +81,19 @@ impl EmbeddedStore {
         Ok(Self::new(folder, database, files, Some(Arc::new(lock))))
     }
 
-    /// Opens the store beside a process that may be serving from it, for a command. Makes what is missing.
+    /// Opens the store beside a process that may be serving from it, for a command. Makes what is missing; what cannot be
+    /// written to is read, as by [`EmbeddedStore::open`].
     ///
     /// # Errors
     /// As [`EmbeddedStore::open`], and [`StoreError::Conflict`] where the store has to be brought up to date while an older
     /// program serves from it.
     pub fn attach(folder: &Path) -> Result<Self, StoreError> {
-        make_folder(folder)?;
-        let database = Database::open(&folder.join(DATABASE), &|| lock(folder).map(drop))?;
-        let files = Files::attach(folder)?;
-        Ok(Self::new(folder, database, files, None))
+        let attach = || {
+            make_folder(folder)?;
+            let database = Database::open(&folder.join(DATABASE), &|| lock(folder).map(drop))?;
+            Ok(Self::new(folder, database, Files::attach(folder)?, None))
+        };
+        attach().or_else(|error| Self::open_to_read(folder, error))
     }
 
     /// Whether there is a store in a folder.
