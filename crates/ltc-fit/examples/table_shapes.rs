@@ -78,6 +78,7 @@ fn shapes() -> Vec<Shape> {
         of("12×8×8×6", &[12, 8, 8, 6]),
         of("8×8×12×6", &[8, 8, 12, 6]),
         of("10⁴", &[10, 10, 10, 10]),
+        of("24×8×8×6", &[24, 8, 8, 6]),
         of("12⁴", &[12, 12, 12, 12]),
         square("8²", 8),
         square("16²", 16),
@@ -174,10 +175,9 @@ fn draw(outcomes: &[Outcome], optima: [f64; 2]) -> String {
     {
         text((right, place(1.0, optimum).1 + 16.0), "end", colour, words);
     }
-    for outcome in outcomes {
-        let (x, y) = place(outcome.kilobytes, outcome.tv);
+    for (outcome, at) in outcomes.iter().zip(label_places(outcomes)) {
         let colour = if outcome.isotropic { "#36a" } else { "#b33" };
-        text((x + 7.0, y - 6.0), "start", colour, outcome.name);
+        text(at, "start", colour, outcome.name);
     }
     for outcome in outcomes {
         let (x, y) = place(outcome.kilobytes, outcome.tv);
@@ -186,4 +186,19 @@ fn draw(outcomes: &[Outcome], optima: [f64; 2]) -> String {
     }
     svg.push_str("</svg>\n");
     svg
+}
+
+/// Where the labels start: above and to the right of their points, higher where another label is in the way.
+fn label_places(outcomes: &[Outcome]) -> Vec<(f64, f64)> {
+    const LINE: f64 = 15.0;
+    let mut taken: Vec<(f64, f64, f64)> = Vec::new();
+    for outcome in outcomes {
+        let (x, y) = place(outcome.kilobytes, outcome.tv);
+        let (left, right) = (x + 7.0, x + 12.0 + 7.5 * outcome.name.chars().count() as f64);
+        let is_free =
+            |y: f64| taken.iter().all(|&(l, r, at)| right < l || r < left || (at - y).abs() >= LINE);
+        let y = (0..).map(|i| y - 6.0 - LINE * f64::from(i)).find(|y| is_free(*y)).unwrap_or(y);
+        taken.push((left, right, y));
+    }
+    taken.into_iter().map(|(left, _, y)| (left, y)).collect()
 }

@@ -1,6 +1,7 @@
 //! Angles from their sine and cosine, without the cost of a library's `atan2`.
 
 use super::lane::Lane;
+use crate::Real;
 
 /// A way to compute arc tangents on [0, 1].
 pub(super) trait Arctangent {
@@ -118,6 +119,28 @@ pub(super) fn angle<L: Lane, K: Arctangent>(y: L, x: L) -> L {
     let magnitude = x.abs();
     let ratio = magnitude.min(y) / magnitude.max(y).max(x.lit(L::TINY));
     unfold::<L, K>(ratio, y, x)
+}
+
+/// `atan2(sine, cosine)` ∈ [0, π] for a sine ≥ 0, to what an `R` can tell: 2.4e-9 or 5e-16, relative.
+#[inline]
+pub(super) fn angle_for<R: Real>(sine: f64, cosine: f64) -> f64 {
+    if R::EPSILON.to_f64() > 1e-10 {
+        angle::<f64, Single>(sine, cosine)
+    } else {
+        angle::<f64, Double>(sine, cosine)
+    }
+}
+
+/// `atan2(sine, cosine)` ∈ [−π, π], as precise.
+#[inline]
+pub(super) fn azimuth_for<R: Real>(sine: f64, cosine: f64) -> f64 {
+    angle_for::<R>(sine.abs(), cosine).copysign(sine)
+}
+
+/// `atan2(sine, cosine)` ∈ [−π, π].
+#[inline]
+pub(super) fn azimuth<R: Real>(sine: R, cosine: R) -> R {
+    R::of(azimuth_for::<R>(sine.to_f64(), cosine.to_f64()))
 }
 
 #[cfg(test)]

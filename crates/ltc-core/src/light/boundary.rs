@@ -8,7 +8,7 @@ use core::marker::PhantomData;
 use glam::{DMat3, DVec3};
 
 use super::Horizon;
-use super::angle::{Double, Single, angle};
+use super::angle::{angle_for, azimuth_for};
 use crate::{Matrix, Real, Vector};
 
 /// Sutherland–Hodgman against z ≥ 0, one vertex out at a time.
@@ -185,30 +185,17 @@ impl<R: Real> BoundarySum<R> {
         let slope = normal.z / length;
         let (a_in, b_in) = (!self.horizon.cosine || a.z >= 0.0, !self.horizon.cosine || b.z >= 0.0);
         self.sum += match (a_in, b_in) {
-            (true, true) => Self::angle(length, a.dot(b)) * slope,
-            (false, false) => Self::azimuth(normal.z, a.x * b.x + a.y * b.y),
+            (true, true) => angle_for::<R>(length, a.dot(b)) * slope,
+            (false, false) => azimuth_for::<R>(normal.z, a.x * b.x + a.y * b.y),
             (true, false) => {
                 let (to_a, to_b) = horizon_cosines(a, b, normal, length);
-                Self::angle(a.z * length, to_a) * slope + Self::azimuth(-b.z * normal.z, to_b)
+                angle_for::<R>(a.z * length, to_a) * slope + azimuth_for::<R>(-b.z * normal.z, to_b)
             }
             (false, true) => {
                 let (to_b, to_a) = horizon_cosines(b, a, -normal, length);
-                Self::azimuth(-a.z * normal.z, to_a) + Self::angle(b.z * length, to_b) * slope
+                azimuth_for::<R>(-a.z * normal.z, to_a) + angle_for::<R>(b.z * length, to_b) * slope
             }
         };
-    }
-
-    fn angle(sine: f64, cosine: f64) -> f64 {
-        if R::EPSILON.to_f64() > 1e-10 {
-            angle::<f64, Single>(sine, cosine)
-        } else {
-            angle::<f64, Double>(sine, cosine)
-        }
-    }
-
-    /// Azimuth in (−π, π] from its sine and cosine.
-    fn azimuth(sine: f64, cosine: f64) -> f64 {
-        Self::angle(sine.abs(), cosine).copysign(sine)
     }
 }
 

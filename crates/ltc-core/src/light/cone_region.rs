@@ -1,5 +1,6 @@
 //! An elliptical cone cut by planes through its apex, and the cosine's integral over it.
 
+use super::angle::azimuth;
 use crate::{Real, Vector};
 
 /// Pieces of a boundary at most: a circle cut by a plane has two, each further plane adds two.
@@ -256,7 +257,7 @@ fn within<R: Real>(vertex: Vertex<R>, ahead: R, [start, end]: [Vertex<R>; 2], le
 /// Angle from `p` to `q` counter-clockwise around `normal`. No chord of a cone is longer than π: what rounding makes
 /// negative near π is taken as such.
 fn angle_around<R: Real>(normal: R::Vec3, p: R::Vec3, q: R::Vec3) -> R {
-    let angle = normal.dot(p.cross(q)).atan2(p.dot(q));
+    let angle = azimuth(normal.dot(p.cross(q)), p.dot(q));
     if angle < R::of(-0.5) * R::PI { angle + R::of(2.0) * R::PI } else { angle }
 }
 
@@ -278,7 +279,7 @@ fn arc<R: Real>([a, b]: [R; 2], n: R::Vec3, start: Vertex<R>, end: Vertex<R>) ->
     let cosine = artanh_over(kk, (u1 - u0) / (kk * (R::ONE - u0 * u1) + ratio.squared()));
     let qq = gap / beta.squared();
     let sine = arctan_over(qq, w1 - w0, R::ONE + qq * w0 * w1);
-    let even = (ratio * (w0 * u1 - u0 * w1)).atan2(w0 * w1 + ratio.squared() * u0 * u1);
+    let even = azimuth(ratio * (w0 * u1 - u0 * w1), w0 * w1 + ratio.squared() * u0 * u1);
     let length = ahead(start.turn, end.turn);
     let even = match even < R::ZERO {
         true if length > R::ONE => even + R::of(2.0) * R::PI,
@@ -308,5 +309,5 @@ fn arctan_over<R: Real>(qq: R, y: R, x: R) -> R {
         return y;
     }
     let q = qq.sqrt();
-    (q * y).atan2(x) / q
+    azimuth(q * y, x) / q
 }

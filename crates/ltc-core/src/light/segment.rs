@@ -1,5 +1,6 @@
 //! A straight segment seen from the shading point, and the integral along it that all thin lights share.
 
+use super::angle::azimuth;
 use super::{Horizon, LineSample};
 use crate::{Ltc, Matrix, Real, Vector};
 
@@ -30,7 +31,7 @@ impl<R: Real> Segment<R> {
     ///
     /// What matters is `p0 × p1`. Its direction and length are taken with [`Real::product_difference`]: as plain differences
     /// they would lose a relative ε · distance / d for a line that passes close by, or that points at the shading point.
-    #[inline]
+    #[inline(always)]
     pub fn new(p0: R::Vec3, p1: R::Vec3) -> Option<Self> {
         let scale = p0.max_abs().max(p1.max_abs()).floor_power_of_two();
         if scale <= R::ZERO {
@@ -75,7 +76,7 @@ impl<R: Real> Segment<R> {
     /// It equals eq. 1.21 to 1.23, whose differences of arc tangents and of `l/(d (d² + l²))` cancel as d → 0 and for short,
     /// distant and radial lines. Here the second term is a product of sums of positive numbers, and the first takes away
     /// at most a third of it, so nothing cancels: the relative error is some ε · cond(M) for every segment above the horizon.
-    #[inline]
+    #[inline(always)]
     pub fn integral(&self, ltc: &Ltc<R>, horizon: Horizon) -> R {
         let mut kept = R::ONE;
         let mut ends = self.ends;
@@ -109,7 +110,7 @@ impl<R: Real> Segment<R> {
 }
 
 /// The bracket of [`Segment::integral`] for the ends `q0`, `q1`, with `sine = |q0 × q1|` and `nearness = c_z/d`.
-#[inline]
+#[inline(always)]
 fn cosine_integral<R: Real>([q0, q1]: [R::Vec3; 2], sine: R, nearness: R) -> R {
     let (r0, r1) = (length::<R>(q0), length::<R>(q1));
     let (product, cosine) = (r0 * r1, q0.dot(q1));
@@ -121,13 +122,13 @@ fn cosine_integral<R: Real>([q0, q1]: [R::Vec3; 2], sine: R, nearness: R) -> R {
     let bow = if x < R::of(1.0 / 64.0) {
         half_tangent * x * angle_less_sine_series(x)
     } else {
-        sine.atan2(cosine) - sine * inverse
+        azimuth(sine, cosine) - sine * inverse
     };
     nearness * bow + ends
 }
 
 /// The length of a vector whose square may underflow: an end that a horizon cuts is as near as the line is.
-#[inline]
+#[inline(always)]
 fn length<R: Real>(v: R::Vec3) -> R {
     let length = v.length();
     if length > R::of(SMALL).sqrt() {
@@ -170,7 +171,7 @@ pub(super) fn unit<R: Real>(v: R::Vec3) -> Option<R::Vec3> {
 ///
 /// `moment = p0 × p1` decides where: the point p of the line with z = 0 is `(ẑ × moment) / (z1 − z0)`, which cancels nowhere,
 /// where interpolation between the ends loses ε · distance for a line that crosses the horizon close by.
-#[inline]
+#[inline(always)]
 pub(super) fn clip_above<R: Real>(ends: &mut [R::Vec3; 2], moment: R::Vec3) -> R {
     let [z0, z1] = [ends[0].z(), ends[1].z()];
     if z0 <= R::ZERO && z1 <= R::ZERO {
