@@ -1,14 +1,10 @@
-//! A name for each request, for its log line, its answer and its problem document.
+//! A name for each request: for its log line, its answer and its problem document.
 
 use std::hash::{BuildHasher, RandomState};
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
-use axum::extract::Request;
 use axum::http::{HeaderMap, HeaderName, HeaderValue};
-use axum::middleware::Next;
-use axum::response::Response;
 
 pub(crate) const X_REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 const MAX_LENGTH: usize = 128;
@@ -23,8 +19,12 @@ impl RequestId {
         self.0.to_str().unwrap_or_default()
     }
 
-    fn of(headers: &HeaderMap) -> Self {
-        headers.get(X_REQUEST_ID).filter(|v| is_plain(v.as_bytes())).cloned().map_or_else(Self::fresh, Self)
+    pub(crate) fn header(&self) -> HeaderValue {
+        self.0.clone()
+    }
+
+    pub(crate) fn of(headers: &HeaderMap) -> Self {
+        headers.get(&X_REQUEST_ID).filter(|v| is_plain(v.as_bytes())).cloned().map_or_else(Self::fresh, Self)
     }
 
     /// Unique, not secret: a number drawn for the process, and a count.
@@ -39,26 +39,6 @@ impl RequestId {
 fn is_plain(id: &[u8]) -> bool {
     let plain = |b: &u8| b.is_ascii_alphanumeric() || b"-_.:/+=".contains(b);
     (1..=MAX_LENGTH).contains(&id.len()) && id.iter().all(plain)
-}
-
-/// Names the request, logs its end, and returns the name with the answer.
-pub(crate) async fn name_and_log(mut request: Request, next: Next) -> Response {
-    let id = RequestId::of(request.headers());
-    request.extensions_mut().insert(id.clone());
-    let (method, uri) = (request.method().clone(), request.uri().clone());
-    let start = Instant::now();
-    let mut response = next.run(request).await;
-    // The path without the query: a query may one day hold what a log must not.
-    tracing::info!(
-        request_id = id.as_str(),
-        method = method.as_str(),
-        path = uri.path(),
-        status = response.status().as_u16(),
-        microseconds = start.elapsed().as_micros() as u64,
-        "request"
-    );
-    response.headers_mut().insert(X_REQUEST_ID, id.0);
-    response
 }
 
 #[cfg(test)]

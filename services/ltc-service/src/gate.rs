@@ -1,0 +1,172 @@
+//! What every request passes on its way in, and every answer on its way out.
+
+use std::net::{IpAddr, SocketAddr};
+use std::time::Instant;
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::{Request, State};
+use axum::http::{HeaderMap, Method};
+use axum::response::{IntoResponse, Response};
+use tower::ServiceExt;
+
+use crate::answers::Question;
+use crate::auth::{Caller, is_presented};
+use crate::metrics::RouteLabel;
+use crate::rates::Client;
+use crate::request_id::{RequestId, X_REQUEST_ID};
+use crate::settings::Access;
+use crate::{ApiError, AppState, headers, problem};
+
+/// The address at the other end of the connection.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Peer(pub SocketAddr);
+
+/// Everything before and after the routes.
+#[derive(Clone)]
+pub(crate) struct Gate {
+    state: AppState,
+    routes: Router,
+}
+
+/// What a log line says.
+struct Line {
+    method: Method,
+    path: String,
+    start: Instant,
+}
+
+impl Gate {
+    pub(crate) fn new(state: AppState, routes: Router) -> Self {
+        Self { state, routes }
+    }
+
+    /// [`Gate::answer`] as a handler.
+    pub(crate) async fn handle(State(gate): State<Self>, request: Request) -> Response {
+        gate.answer(request).await
+    }
+
+    /// Answers a request, whatever happens.
+    pub(crate) async fn answer(&self, request: Request) -> Response {
+        let line = Line {
+            method: request.method().clone(),
+            path: request.uri().path().to_owned(),
+            start: Instant::now(),
+        };
+        let id = RequestId::of(request.headers());
+        let (response, route) = if headers::is_preflight(&request) {
+            (headers::answer_preflight(), RouteLabel(0))
+        } else {
+            self.admit(request, &id).await
+        };
+        self.finish(response, route, &id, &line)
+    }
+
+    async fn admit(&self, mut request: Request, id: &RequestId) -> (Response, RouteLabel) {
+        let refused = |error: ApiError| (error.into_response(), RouteLabel(0));
+        let path = request.uri().path();
+        match self.identify(request.headers(), path, address(&request)).await {
+            Ok(Some(caller)) => {
+                request.extensions_mut().insert(caller);
+            }
+            Ok(None) => {}
+            Err(error) => return refused(error),
+        }
+        if let Err(error) = self.check_rate(&request) {
+            self.state.metrics().limited.add(1);
+            return refused(error);
+        }
+        let revision = self.state.revision();
+        if let Some(known) = self.state.answers().find(&request, revision) {
+            self.state.metrics().answer_hits.add(1);
+            return known;
+        }
+        let Ok(_permit) = self.state.requests().try_acquire() else {
+            self.state.metrics().shed.add(1);
+            return refused(ApiError::Overloaded);
+        };
+        let question = Question::of(&request);
+        request.extensions_mut().insert(id.clone());
+        let mut response = self.route(request).await;
+        let route = response.extensions().get().copied().unwrap_or(RouteLabel(0));
+        if let Some(question) = question {
+            self.state.answers().keep(&question, &mut response, revision, route);
+        }
+        (response, route)
+    }
+
+    /// Who asks, where that matters: a token that is sent must be good, and reading may need one.
+    async fn identify(
+        &self,
+        headers: &HeaderMap,
+        path: &str,
+        address: Option<IpAddr>,
+    ) -> Result<Option<Caller>, ApiError> {
+        let private = self.state.settings().read == Access::Token && is_private(path);
+        if !private && !is_presented(headers) {
+            return Ok(None);
+        }
+        let (metadata, guess) = (&self.state.stores().metadata, || self.state.allow_guess(address));
+        let caller = self.state.tokens().caller(headers, &**metadata, guess).await?;
+        if private {
+            let caller = caller.as_ref().ok_or(ApiError::Unauthenticated {
+                reason: "reading needs a bearer token here; ltc token create makes one",
+                presented: false,
+            })?;
+            caller.must(ltc_store::Scope::Read)?;
+        }
+        Ok(caller)
+    }
+
+    /// Reads are counted here, writes where their token's scope is known.
+    fn check_rate(&self, request: &Request) -> Result<(), ApiError> {
+        let caller = request.extensions().get::<Caller>();
+        self.state.rates().read(|| match caller {
+            Some(caller) => Client::Token(caller.id.clone()),
+            None => Client::of_address(address(request)),
+        })
+    }
+
+    async fn route(&self, request: Request) -> Response {
+        // An upload is measured anew, which takes as long as it takes.
+        let long = request.method() == Method::POST && request.uri().path().ends_with("/versions");
+        let time = self.state.limits().request_time() * if long { 10 } else { 1 };
+        match tokio::time::timeout(time, self.routes.clone().oneshot(request)).await {
+            Ok(Ok(response)) => response,
+            Ok(Err(never)) => match never {},
+            Err(_) => ApiError::Timeout.into_response(),
+        }
+    }
+
+    fn finish(&self, response: Response, route: RouteLabel, id: &RequestId, line: &Line) -> Response {
+        let mut response = problem::render(response, &line.path, id);
+        let headers = response.headers_mut();
+        headers::add(headers);
+        headers.insert(X_REQUEST_ID, id.header());
+        let (status, time) = (response.status(), line.start.elapsed());
+        self.state.metrics().answered(route, status.as_u16(), time);
+        log(line, id, status.as_u16(), time.as_micros() as u64);
+        response
+    }
+}
+
+/// One line for each request: those that read and get what they asked for at the level `debug`, others at `info`. The path without
+/// the query, which may one day hold what a log must not; no header ever.
+fn log(line: &Line, id: &RequestId, status: u16, microseconds: u64) {
+    let (request_id, method, path) = (id.as_str(), line.method.as_str(), line.path.as_str());
+    let reads = matches!(line.method, Method::GET | Method::HEAD | Method::OPTIONS);
+    if reads && status < 400 {
+        tracing::debug!(request_id, method, path, status, microseconds, "request");
+    } else {
+        tracing::info!(request_id, method, path, status, microseconds, "request");
+    }
+}
+
+/// Whether a path needs a token where reading does. What tells nothing about tables never does.
+fn is_private(path: &str) -> bool {
+    path == "/" || path.starts_with("/v1/")
+}
+
+fn address(request: &Request<Body>) -> Option<IpAddr> {
+    request.extensions().get::<Peer>().map(|Peer(address)| address.ip())
+}
