@@ -45,13 +45,26 @@ cmp "$folder/www/table.npz" "$folder/again"
 tag() { curl -fsSI "$1" | tr -d '\r' | sed -n 's/^[Ee][Tt][Aa][Gg]: //p'; }
 echo "$table: $(stat -c %s "$folder/www/table.npz") bytes; load average $(cut -d' ' -f1-3 /proc/loadavg)"
 
-rate() { wrk -t1 -c"${CONNECTIONS:-32}" -d"${seconds}s" "$@" | sed -n 's/^Requests\/sec: *//p'; }
+# Processor time that a server and its children have used so far, in hundredths of a second.
+used() { cat /proc/"$1"/stat $(pgrep -P "$1" | sed 's|.*|/proc/&/stat|') | awk '{ sub(/.*\) /, ""); t += $12 + $13 } END { print t }'; }
+# Requests a second, and microseconds of processor time for each: the second figure hardly depends on who else is busy.
+measure() {
+    local pid=$1 before after
+    shift
+    before=$(used "$pid")
+    wrk -t1 -c"${CONNECTIONS:-32}" -d"${seconds}s" "$@" >"$folder/wrk"
+    after=$(used "$pid")
+    awk -v ticks=$((after - before)) '/requests in/ { n = $1 } /^Requests\/sec/ { print $2, ticks * 10000 / n }' "$folder/wrk"
+}
 for round in $(seq "$rounds"); do
-    a=$(rate "$ours"); b=$(rate "$theirs")
-    c=$(rate -H "If-None-Match: $(tag "$ours")" "$ours"); d=$(rate -H "If-None-Match: $(tag "$theirs")" "$theirs")
-    python3 - "$round" "$a" "$b" "$c" "$d" <<'PY'
+    a=$(measure "${pids[0]}" "$ours"); b=$(measure "${pids[1]}" "$theirs")
+    c=$(measure "${pids[0]}" -H "If-None-Match: $(tag "$ours")" "$ours")
+    d=$(measure "${pids[1]}" -H "If-None-Match: $(tag "$theirs")" "$theirs")
+    python3 - "$round" $a $b $c $d <<'PY'
 import sys
-round_, a, b, c, d = sys.argv[1], *map(float, sys.argv[2:])
-print(f"round {round_}: 200 {a:.0f}/s, nginx {b:.0f}/s, ratio {a / b:.2f}; 304 {c:.0f}/s, nginx {d:.0f}/s, ratio {c / d:.2f}")
+a, at, b, bt, c, ct, d, dt = map(float, sys.argv[2:])
+print(f"round {sys.argv[1]}: 200 {a:.0f}/s ({at:.1f} us), nginx {b:.0f}/s ({bt:.1f} us), ratio {a / b:.2f}; "
+      f"304 {c:.0f}/s ({ct:.1f} us), nginx {d:.0f}/s ({dt:.1f} us), ratio {c / d:.2f}")
 PY
 done
+echo "load average $(cut -d' ' -f1-3 /proc/loadavg)"

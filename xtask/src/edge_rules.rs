@@ -47,6 +47,9 @@ pub const RULES: &[Rule] = &[
     Rule::Never { from: "ltc-service", targets: &["wgpu", "ltc-shade-gpu", "ltc-render"] },
     // The ends of the graph stay ends.
     Rule::OnlyBy { target: "ltc-service", by: TOPS },
+    // Whoever only fetches tables compiles no server and no fitter.
+    Rule::OursOnly { from: "ltc-client", allowed: &["ltc-table"] },
+    Rule::Never { from: "ltc-client", targets: &["wgpu", "axum", "tokio", "rayon"] },
     Rule::OnlyBy { target: "ltc-cli", by: TOPS },
     // Every command of the README compiles this crate first.
     Rule::Never { from: "xtask", targets: &["wgpu", "axum", "tokio"] },

@@ -70,11 +70,8 @@ impl Serve {
         let temporary = settings.data.as_os_str().is_empty().then(TempDir::new).transpose();
         let temporary = temporary.context("cannot make a temporary folder; give one with --data")?;
         let folder = temporary.as_ref().map_or(settings.data.as_path(), TempDir::path).to_owned();
-        if temporary.is_some() {
-            tracing::warn!("nothing outlives this process; --data DIR keeps it");
-        }
         let store = open(&folder, &settings)?;
-        runtime.block_on(serve(store, &catalogue, settings))?;
+        runtime.block_on(serve(store, &catalogue, settings, temporary.is_some()))?;
         outln!("stopped");
         Ok(())
     }
@@ -123,12 +120,17 @@ fn open(folder: &Path, settings: &Settings) -> Result<Arc<EmbeddedStore>> {
     Ok(Arc::new(store))
 }
 
-async fn serve(store: Arc<EmbeddedStore>, catalogue: &Catalogue, settings: Settings) -> Result<()> {
+async fn serve(
+    store: Arc<EmbeddedStore>,
+    catalogue: &Catalogue,
+    settings: Settings,
+    temporary: bool,
+) -> Result<()> {
     if store.is_writable() {
         let spec_digest = |manifest: &_| ltc_refit::spec_digest(manifest);
         let added = ltc_store::seed(&*store, &*store, catalogue, &spec_digest).await;
         match added.context("cannot fill the store with the shipped tables") {
-            Ok(added) => tracing::info!(added, "tables of the program are in the store"),
+            Ok(added) => tracing::debug!(added, "tables of the program are in the store"),
             // A full disk: what is there is served all the same.
             Err(error) => tracing::error!("{error:#}"),
         }
@@ -136,6 +138,9 @@ async fn serve(store: Arc<EmbeddedStore>, catalogue: &Catalogue, settings: Setti
     let state = AppState::new(Stores::of(store), settings).await.context("cannot read the store")?;
     let names: Vec<String> = state.table_names();
     ltc_service::serve(state, |address| {
+        if temporary {
+            tracing::warn!("nothing outlives this process; --data DIR keeps it");
+        }
         // Nobody may be reading; the service runs all the same.
         let _ = announce(&names, address);
     })
