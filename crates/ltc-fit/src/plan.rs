@@ -4,7 +4,7 @@ use ltc_table::digest::digest;
 
 use crate::{
     Brdf, FitError, FitSpec, Lattice, Objective,
-    entries::EntryStage,
+    entries::{EntryStage, PIECE},
     progress::{CHANNELS, ENTRIES, JOINT, MEASUREMENT},
 };
 
@@ -158,6 +158,22 @@ impl Cost {
         self.seconds.iter().map(|(_, seconds)| seconds).sum()
     }
 
+    /// The longest piece of work that a [`crate::FitRun`] does at once: its stage, and seconds of one core. What a kill loses
+    /// at most.
+    pub fn longest_piece(&self, spec: &FitSpec) -> (&'static str, f64) {
+        let [entries, joint, channels, measurement] = self.seconds;
+        let share = if spec.entries.is_chained() { 1.0 } else { PIECE as f64 / self.entries.max(1) as f64 };
+        let pieces = [
+            (ENTRIES, entries.1 * share.min(1.0)),
+            (JOINT, joint.1 / spec.joint.steps.max(1) as f64),
+            channels,
+            measurement,
+        ];
+        pieces
+            .into_iter()
+            .fold((ENTRIES, 0.0), |longest, piece| if piece.1 > longest.1 { piece } else { longest })
+    }
+
     /// # Errors
     /// [`FitError::TooLarge`], with the estimate, when the cost is above one of the limits.
     pub fn check(&self, limits: &Limits) -> Result<(), FitError> {
@@ -190,6 +206,24 @@ mod tests {
         let mut longer = spec;
         longer.joint.steps *= 10;
         assert!(Cost::of(&longer).total_seconds() > 5.0 * cost.seconds[1].1);
+    }
+
+    #[test]
+    fn the_longest_piece_is_found() {
+        let mut spec = FitSpec::preset("ggx-anisotropic").unwrap();
+        let longest = |spec: &FitSpec| Cost::of(spec).longest_piece(spec);
+        assert_eq!(longest(&spec).0, CHANNELS);
+        assert!(longest(&spec).1 < 5.0, "{:?}", longest(&spec));
+        spec.measure.samples *= 8;
+        assert_eq!(longest(&spec).0, MEASUREMENT);
+        spec.joint.queries = 1 << 20;
+        spec.joint.samples = 1 << 14;
+        assert_eq!(longest(&spec).0, JOINT);
+        assert!(longest(&spec).1 > 100.0, "{:?}", longest(&spec));
+        let mut chained = FitSpec::preset("ggx-anisotropic").unwrap();
+        let whole = Cost::of(&chained).seconds[0].1;
+        chained.entries.continuation = true;
+        assert!(longest(&chained).0 == ENTRIES && longest(&chained).1 > whole, "all entries in one piece");
     }
 
     #[test]

@@ -72,7 +72,7 @@ impl Refits {
     /// the idempotency key was used with another request.
     pub async fn request(&self, ask: Ask) -> Result<(Job, bool), RefitError> {
         let Checked { spec, digest, cost } = check(&ask.spec, &self.0.config.limits)?;
-        self.0.config.allows(&cost)?;
+        self.0.config.allows(&spec, &cost)?;
         let json = serde_json::to_value(&spec)
             .map_err(|e| RefitError::Spec { field: String::new(), reason: e.to_string() })?;
         let job = NewJob {

@@ -248,7 +248,7 @@ async fn what_cannot_be_fitted_is_refused_before_there_is_a_job() {
     let store = MemoryStore::default();
     let limits = Limits { memory: 1 << 20, seconds: 1e9 };
     let shared = Arc::new(store.clone());
-    let config = RefitConfig { limits, queue: 1, stage_seconds: 5.0, ..config() };
+    let config = RefitConfig { limits, queue: 1, piece_seconds: 5.0, ..config() };
     let refits = Refits::new(shared.clone(), shared.clone(), shared, config);
     let refused = refits.request(Ask::new(json!({ "preset": "ggx-isotropic" }))).await.unwrap_err();
     assert!(matches!(refused, RefitError::TooLarge { .. }), "{refused}");
