@@ -31,14 +31,14 @@ pub struct RefitConfig {
 
 impl Default for RefitConfig {
     /// One refit at a time on all cores, of at most 2 GiB and 4 hours of one core; 64 may wait. Shards of a second, and pieces
-    /// of at most half a minute of one core, far above those of any preset (2 s).
+    /// of at most 10 s of one core, far above those of any preset (0.3 s).
     fn default() -> Self {
         Self {
             workers: 1,
             threads: 0,
             queue: 64,
             limits: Limits { memory: 2 << 30, seconds: 4.0 * 3600.0 },
-            piece_seconds: 30.0,
+            piece_seconds: 10.0,
             shard: Duration::from_secs(1),
             lease: Duration::from_secs(30),
             program: concat!("ltc-refit ", env!("CARGO_PKG_VERSION")).to_owned(),
@@ -63,8 +63,8 @@ impl RefitConfig {
                 "entries.samples, or set entries.continuation to false and entries.optimiser to quasi_newton"
             }
             JOINT => "joint.queries or joint.samples",
-            CHANNELS => "channels.samples or channels.queries",
-            _ => "measure.samples or measure.queries",
+            CHANNELS => "channels.samples",
+            _ => "measure.samples",
         };
         let (entries, memory, seconds) = (cost.entries, cost.memory, cost.total_seconds());
         let reason = format!(

@@ -246,21 +246,24 @@ async fn a_worker_whose_job_was_taken_over_publishes_nothing() {
 #[tokio::test]
 async fn what_cannot_be_fitted_is_refused_before_there_is_a_job() {
     let store = MemoryStore::default();
-    let limits = Limits { memory: 1 << 20, seconds: 1e9 };
+    let limits = Limits { memory: 20 << 20, seconds: 1e9 };
     let shared = Arc::new(store.clone());
     let config = RefitConfig { limits, queue: 1, piece_seconds: 5.0, ..config() };
     let refits = Refits::new(shared.clone(), shared.clone(), shared, config);
-    let refused = refits.request(Ask::new(json!({ "preset": "ggx-isotropic" }))).await.unwrap_err();
+    let refused = refits
+        .request(Ask::new(json!({ "preset": "ggx-anisotropic", "channels": { "queries": 1 << 20 } })))
+        .await
+        .unwrap_err();
     assert!(matches!(refused, RefitError::TooLarge { .. }), "{refused}");
     let mut odd = spec(1);
     odd["joint"]["samples"] = json!(-1);
     let refused = refits.request(Ask::new(odd)).await.unwrap_err();
     assert!(matches!(&refused, RefitError::Spec { field, .. } if field == "joint.samples"), "{refused}");
     let mut long = spec(1);
-    long["measure"]["samples"] = json!(1 << 20);
+    (long["joint"]["samples"], long["joint"]["queries"]) = (json!(1 << 20), json!(1 << 14));
     let refused = refits.request(Ask::new(long)).await.unwrap_err();
     assert!(matches!(refused, RefitError::TooLarge { .. }), "{refused}");
-    assert!(refused.to_string().contains("lower measure.samples"), "{refused}");
+    assert!(refused.to_string().contains("lower joint.queries or joint.samples"), "{refused}");
     assert!(store.jobs(9).await.unwrap().is_empty());
     refits.request(Ask::new(spec(1))).await.unwrap();
     let full = refits.request(Ask::new(spec(2))).await.unwrap_err();
