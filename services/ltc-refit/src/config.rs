@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use ltc_fit::progress::{CHANNELS, MEASUREMENT};
-use ltc_fit::{Cost, Limits};
+use ltc_fit::progress::{CHANNELS, ENTRIES, JOINT};
+use ltc_fit::{Cost, FitSpec, Limits};
 
 use crate::RefitError;
 
@@ -18,10 +18,10 @@ pub struct RefitConfig {
     pub queue: u64,
     /// What one refit may take.
     pub limits: Limits,
-    /// Seconds of one core that either of the last two stages (magnitude and Fresnel, measurement) may take: a kill within
-    /// such a stage loses what is done of it.
-    pub stage_seconds: f64,
-    /// How often what is done so far is kept: the length of a shard.
+    /// Seconds of one core that the longest piece of a fit may take, that is of work that cannot be interrupted and kept
+    /// ([`Cost::longest_piece`]).
+    pub piece_seconds: f64,
+    /// How often what is done so far is kept: the length of a shard, where no piece is longer.
     pub shard: Duration,
     /// After this time without a sign of life a worker counts as dead.
     pub lease: Duration,
@@ -30,15 +30,15 @@ pub struct RefitConfig {
 }
 
 impl Default for RefitConfig {
-    /// One refit at a time on all cores, of at most 2 GiB and 4 hours of one core; 64 may wait. Shards of a second, the last
-    /// two stages of at most a minute of one core each.
+    /// One refit at a time on all cores, of at most 2 GiB and 4 hours of one core; 64 may wait. Shards of a second, and pieces
+    /// of at most 10 s of one core, far above those of any preset (0.3 s).
     fn default() -> Self {
         Self {
             workers: 1,
             threads: 0,
             queue: 64,
             limits: Limits { memory: 2 << 30, seconds: 4.0 * 3600.0 },
-            stage_seconds: 60.0,
+            piece_seconds: 10.0,
             shard: Duration::from_secs(1),
             lease: Duration::from_secs(30),
             program: concat!("ltc-refit ", env!("CARGO_PKG_VERSION")).to_owned(),
@@ -51,24 +51,26 @@ impl RefitConfig {
     ///
     /// # Errors
     /// [`RefitError::TooLarge`], with the estimate and what to lower.
-    pub fn allows(&self, cost: &Cost) -> Result<(), RefitError> {
+    pub fn allows(&self, spec: &FitSpec, cost: &Cost) -> Result<(), RefitError> {
         cost.check(&self.limits)?;
-        let (entries, memory, seconds) = (cost.entries, cost.memory, cost.total_seconds());
-        for (stage, of_stage) in cost.seconds {
-            let fields = match stage {
-                CHANNELS => "channels.samples or channels.queries",
-                MEASUREMENT => "measure.samples or measure.queries",
-                _ => continue,
-            };
-            if of_stage > self.stage_seconds {
-                let limit = self.stage_seconds;
-                let reason = format!(
-                    "{entries} entries would take about {of_stage:.0} s of one core for the stage \"{stage}\", which is done in one \
-                     piece; the limit is {limit:.0} s: lower {fields}, or fit with fewer entries"
-                );
-                return Err(RefitError::TooLarge { entries, memory, seconds, reason });
-            }
+        let (stage, piece) = cost.longest_piece(spec);
+        let limit = self.piece_seconds;
+        if piece <= limit {
+            return Ok(());
         }
-        Ok(())
+        let fields = match stage {
+            ENTRIES => {
+                "entries.samples, or set entries.continuation to false and entries.optimiser to quasi_newton"
+            }
+            JOINT => "joint.queries or joint.samples",
+            CHANNELS => "channels.samples",
+            _ => "measure.samples",
+        };
+        let (entries, memory, seconds) = (cost.entries, cost.memory, cost.total_seconds());
+        let reason = format!(
+            "{entries} entries would take about {piece:.0} s of one core for a piece of the stage \"{stage}\" that cannot be \
+             interrupted; the limit is {limit:.0} s: lower {fields}, or fit fewer entries"
+        );
+        Err(RefitError::TooLarge { entries, memory, seconds, reason })
     }
 }

@@ -7,8 +7,9 @@
 //!   ([`RefitError`]); nobody finds that out from a job.
 //! - The same specification gives the same version: one that is there already is the answer, whoever asks.
 //! - Work is done in shards of [`RefitConfig::shard`]. At the end of each the state of the fit is kept as a blob, so that a
-//!   kill loses one shard, and the table is the same to the last bit however often that happens. The two last stages of a
-//!   fit (magnitude and Fresnel, measurement) are a shard each, whose length is bounded ([`RefitConfig::stage_seconds`]).
+//!   kill loses one shard, and the table is the same to the last bit however often that happens. Some work can
+//!   only be done in one piece, such as entries that start from each other; specifications whose longest piece would take long
+//!   are refused, too ([`RefitConfig::piece_seconds`]).
 //! - Threads that fit have the lowest priority: requests get the cores first.
 //! - A result is published in this order: payload, version, alias, end of the job. A kill in between leaves what the next
 //!   attempt finds and completes. The alias stays where the new version is worse on the standard draw than the one it points

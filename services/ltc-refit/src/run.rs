@@ -95,7 +95,7 @@ impl Run<'_> {
     /// Fits, and reports while that goes on.
     async fn fit(&self, spec: FitSpec) -> Result<TableVersion, End> {
         let cost = Cost::of(&spec);
-        self.shared.config.allows(&cost).map_err(|e| End::Failed(e.to_string()))?;
+        self.shared.config.allows(&spec, &cost).map_err(|e| End::Failed(e.to_string()))?;
         let live = Arc::new(Live::new(&cost));
         let (blobs, runtime) = (Arc::clone(&self.shared.blobs), tokio::runtime::Handle::current());
         let checkpoints = Checkpoints::new(blobs, runtime, self.claim);

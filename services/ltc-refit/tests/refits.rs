@@ -101,7 +101,10 @@ async fn a_refit_gives_the_version_that_the_fit_gives() {
     assert!(store.list(BlobKind::Checkpoint).await.unwrap().is_empty(), "nothing is left");
     let metrics = refits.metrics().await.unwrap();
     assert_eq!((metrics.succeeded_total, metrics.queued, metrics.running), (1, 0, 0));
-    assert!(metrics.lobes_total > 50 * 64, "{metrics:?}");
+    // Joint steps; entries, queries and centres of the last two stages.
+    let known = 50 * 64 + (16 + 64) + (2 * 16 + 9 + 100);
+    assert!((known..known + 16).contains(&metrics.lobes_total), "{metrics:?}");
+    assert!(metrics.lobes_per_second.is_sign_positive());
     assert_eq!((metrics.lobes_per_second, metrics.tv), (0.0, None), "nothing runs");
 }
 
@@ -246,21 +249,24 @@ async fn a_worker_whose_job_was_taken_over_publishes_nothing() {
 #[tokio::test]
 async fn what_cannot_be_fitted_is_refused_before_there_is_a_job() {
     let store = MemoryStore::default();
-    let limits = Limits { memory: 1 << 20, seconds: 1e9 };
+    let limits = Limits { memory: 20 << 20, seconds: 1e9 };
     let shared = Arc::new(store.clone());
-    let config = RefitConfig { limits, queue: 1, stage_seconds: 5.0, ..config() };
+    let config = RefitConfig { limits, queue: 1, piece_seconds: 5.0, ..config() };
     let refits = Refits::new(shared.clone(), shared.clone(), shared, config);
-    let refused = refits.request(Ask::new(json!({ "preset": "ggx-isotropic" }))).await.unwrap_err();
+    let refused = refits
+        .request(Ask::new(json!({ "preset": "ggx-anisotropic", "channels": { "queries": 1 << 20 } })))
+        .await
+        .unwrap_err();
     assert!(matches!(refused, RefitError::TooLarge { .. }), "{refused}");
     let mut odd = spec(1);
     odd["joint"]["samples"] = json!(-1);
     let refused = refits.request(Ask::new(odd)).await.unwrap_err();
     assert!(matches!(&refused, RefitError::Spec { field, .. } if field == "joint.samples"), "{refused}");
     let mut long = spec(1);
-    long["measure"]["samples"] = json!(1 << 20);
+    (long["joint"]["samples"], long["joint"]["queries"]) = (json!(1 << 20), json!(1 << 14));
     let refused = refits.request(Ask::new(long)).await.unwrap_err();
     assert!(matches!(refused, RefitError::TooLarge { .. }), "{refused}");
-    assert!(refused.to_string().contains("lower measure.samples"), "{refused}");
+    assert!(refused.to_string().contains("lower joint.queries or joint.samples"), "{refused}");
     assert!(store.jobs(9).await.unwrap().is_empty());
     refits.request(Ask::new(spec(1))).await.unwrap();
     let full = refits.request(Ask::new(spec(2))).await.unwrap_err();

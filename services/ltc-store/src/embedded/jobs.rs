@@ -169,16 +169,16 @@ fn insert(db: &Connection, job: &NewJob) -> Result<(i64, Job), StoreError> {
         params![seq, id, table, spec, spec_digest, priority, alias, force, owner, key, now, now],
     )
     .map_err(failed)?;
-    forget_old(db)?;
+    forget_old(db, ENDED_KEPT)?;
     let (seq, job) = find(db, &id)?;
     events::add_state(db, seq, &job, now)?;
     Ok((seq, job))
 }
 
-fn forget_old(db: &Connection) -> Result<(), StoreError> {
+fn forget_old(db: &Connection, kept: u32) -> Result<(), StoreError> {
     let sql = "DELETE FROM jobs WHERE state NOT IN ('queued', 'running') AND seq <= \
                (SELECT seq FROM jobs WHERE state NOT IN ('queued', 'running') ORDER BY seq DESC LIMIT 1 OFFSET ?)";
-    db.execute(sql, [ENDED_KEPT]).map(drop).map_err(failed)
+    db.execute(sql, [kept]).map(drop).map_err(failed)
 }
 
 /// What a worker takes next.
@@ -265,4 +265,65 @@ fn cancel(db: &Connection, id: &str) -> Result<Job, StoreError> {
     let job = change(db, seq, set, &[&now])?;
     events::add_state(db, seq, &job, now)?;
     Ok(job)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::EventKind;
+
+    fn database() -> Connection {
+        let mut db = Connection::open_in_memory().unwrap();
+        db.pragma_update(None, "foreign_keys", true).unwrap();
+        super::super::schema::migrate(&mut db).unwrap();
+        db
+    }
+
+    fn add(db: &Connection) -> (i64, Job) {
+        let job = NewJob {
+            table: "t".to_owned(),
+            spec: serde_json::json!({}),
+            spec_digest: String::new(),
+            priority: 0,
+            alias: None,
+            idempotency: None,
+        };
+        insert(db, &job).unwrap()
+    }
+
+    #[test]
+    fn old_jobs_that_ended_go_with_their_events_and_numbers_are_not_used_again() {
+        let db = database();
+        let ids: Vec<String> = (0..6).map(|_| add(&db).1.id).collect();
+        for id in &ids[..5] {
+            cancel(&db, id).unwrap();
+        }
+        forget_old(&db, 2).unwrap();
+        let there = |id: &String| find(&db, id).is_ok();
+        assert_eq!(ids.iter().map(there).collect::<Vec<_>>(), [false, false, false, true, true, true]);
+        let events: i64 = db.query_row("SELECT count(*) FROM events", [], |row| row.get(0)).unwrap();
+        assert_eq!(events, 2 + 2 + 1, "of the jobs that are left");
+        forget_old(&db, 0).unwrap();
+        assert!(there(&ids[5]), "it waits still");
+        db.execute("DELETE FROM jobs", []).unwrap();
+        assert!(add(&db).1.id > ids[5]);
+    }
+
+    #[test]
+    fn events_of_a_long_job_are_bounded_and_their_ids_grow_on() {
+        let db = database();
+        let (seq, job) = add(&db);
+        for i in 0..3000 {
+            let shard = ShardReport { progress: f64::from(i) / 3000.0, ..ShardReport::default() };
+            events::add_report(&db, seq, &shard, i.into()).unwrap();
+            events::add_log(&db, seq, &i.to_string(), i.into()).unwrap();
+        }
+        events::add_state(&db, seq, &job, 3000).unwrap();
+        let kept = events::after(&db, seq, 0).unwrap();
+        let count = |kind| kept.iter().filter(|event| event.kind == kind).count();
+        assert_eq!(count(EventKind::State), 2, "all of them");
+        assert_eq!((count(EventKind::Progress), count(EventKind::Log)), (200, 2000));
+        assert_eq!(kept.last().unwrap().id, 2 + 6000);
+        assert!(kept.is_sorted_by(|a, b| a.id < b.id));
+    }
 }
