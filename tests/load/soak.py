@@ -8,6 +8,7 @@ Usage: python3 tests/load/soak.py SERVER SECONDS
 """
 
 import json
+import os
 import random
 import socket
 import struct
@@ -18,6 +19,8 @@ import time
 from common import Service
 
 CLIENTS = 8
+# Between two requests of a client, seconds: a few hundred requests a second leave a machine usable for hours.
+PAUSE = float(os.environ.get("PAUSE", "0.02"))
 GROWTH = 0.05
 
 
@@ -87,6 +90,7 @@ def client(service, seed, until, counts):
     weights = [weight for weight, _ in actions]
     while time.monotonic() < until:
         rng.choices(actions, weights)[0][1]()
+        time.sleep(PAUSE)
     connection.close()
 
 

@@ -37,16 +37,22 @@ pub(crate) const LATEST: &str = "latest";
 const LISTED: usize = 20;
 
 impl Index {
-    /// Reads what the store has now.
-    pub(crate) async fn read(stores: &Stores) -> Result<Self, StoreError> {
+    /// Reads what the store has now. Manifests that `old` has are taken from there: they never change, and reading hundreds of
+    /// them every other second would be felt.
+    pub(crate) async fn read(stores: &Stores, old: &Self) -> Result<Self, StoreError> {
         let (versions, aliases) = (stores.metadata.versions().await?, stores.metadata.aliases().await?);
-        Ok(Self::new(versions, aliases))
+        Ok(Self::new(versions, aliases, old))
     }
 
-    fn new(versions: Vec<StoredVersion>, aliases: Vec<Alias>) -> Self {
+    fn new(versions: Vec<StoredVersion>, aliases: Vec<Alias>, old: &Self) -> Self {
         let mut tables: BTreeMap<String, Entry> = BTreeMap::new();
         for version in versions.into_iter().filter(|v| v.state == VersionState::Published) {
             let (table, number) = (version.table, version.number);
+            let known = old.tables.get(&table).and_then(|entry| entry.versions.get(&number));
+            if let Some(known) = known.filter(|manifest| manifest.digest == version.digest) {
+                tables.entry(table).or_default().versions.insert(number, Arc::clone(known));
+                continue;
+            }
             match serde_json::from_value::<Manifest>(version.manifest) {
                 Ok(manifest) => {
                     tables.entry(table).or_default().versions.insert(number, Arc::new(manifest));

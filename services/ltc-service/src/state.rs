@@ -64,7 +64,7 @@ impl AppState {
     /// # Errors
     /// When the store cannot be read.
     pub async fn new(stores: Stores, settings: Settings) -> Result<Self, StoreError> {
-        let index = Index::read(&stores).await?;
+        let index = Index::read(&stores, &Index::default()).await?;
         let limits = &settings.limits;
         Ok(Self(Arc::new(Shared {
             index: RwLock::new(Arc::new(index)),
@@ -192,8 +192,9 @@ impl AppState {
     pub async fn refresh(&self) -> Result<(), StoreError> {
         // In turn: of two that read, the later must not be overwritten by the earlier.
         let _turn = self.0.refreshing.lock().await;
-        let index = Index::read(&self.0.stores).await?;
-        if *self.index() != index {
+        let old = self.index();
+        let index = Index::read(&self.0.stores, &old).await?;
+        if *old != index {
             *self.0.index.write().unwrap_or_else(PoisonError::into_inner) = Arc::new(index);
             self.0.revision.fetch_add(1, Ordering::Release);
         }

@@ -4,8 +4,10 @@ use axum::extract::multipart::MultipartError;
 use axum::extract::{FromRequest, Multipart, Request, State};
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use ltc_store::{BlobKind, NewVersion, StoreError, VersionState};
+use ltc_store::{BlobKind, NewVersion, StoredVersion, VersionState};
 use ltc_table::check_name;
+use ltc_table::digest::digest;
+use serde_json::Value;
 
 use crate::auth::Publisher;
 use crate::request_body::media_type;
@@ -80,31 +82,15 @@ pub(crate) async fn version(
     if !uploaded.manifest.is_object() {
         return Err(ApiError::invalid("manifest", "must be an object"));
     }
-    let table = name.clone();
-    let checked = state.long().run(move || background::run(|| check(&table, &uploaded))).await??;
-    let Checked { manifest, payload, digest, faults } = checked;
-    let metadata = &state.stores().metadata;
-    let quarantined = !faults.is_empty();
-    state.stores().blobs.put(BlobKind::Payload, &digest, &payload).await?;
-    let new = NewVersion {
-        table: name.clone(),
-        digest: digest.clone(),
-        manifest,
-        state: if quarantined { VersionState::Quarantined } else { VersionState::Published },
-        spec_digest: None,
-        reason: quarantined.then(|| faults.join("; ")),
-    };
-    let (kept, is_new) = metadata.add_version(new, None).await.map_err(|error| match error {
-        StoreError::NotFound { .. } => ApiError::internal(error),
-        other => other.into(),
-    })?;
-    let number = kept.number;
-    tracing::info!(table = name, version = number, quarantined, token = caller.id, "table uploaded");
-    // The bytes may have been there before, whatever came with them now: what counts is what is kept.
-    if kept.state == VersionState::Quarantined {
-        let faults = if quarantined { faults } else { vec![kept.reason.unwrap_or_default()] };
-        return Err(ApiError::Quarantined { faults, version: number, digest });
+    let (table, copy) = (name.clone(), uploaded.clone());
+    let checked = state.long().run(move || background::run(|| check(&table, &copy))).await??;
+    let Checked { manifest, payload, faults } = checked;
+    if !faults.is_empty() {
+        return Err(quarantine(&state, &name, &caller.id, &uploaded, faults).await?);
     }
+    let version = keep(&state, &name, manifest, &payload, None).await?;
+    let (number, is_new) = (version.0.number, version.1);
+    tracing::info!(table = name, version = number, new = is_new, token = caller.id, "table uploaded");
     state.refresh().await?;
     let manifest = state.index().version(&name, &number.to_string())?.manifest;
     let status = if is_new { StatusCode::CREATED } else { StatusCode::OK };
@@ -115,4 +101,40 @@ pub(crate) async fn version(
     headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
     headers.insert(header::LOCATION, HeaderValue::from_str(&location).map_err(ApiError::internal)?);
     Ok(response)
+}
+
+/// Keeps a version: the payload first, so that no version is ever without.
+async fn keep(
+    state: &AppState,
+    table: &str,
+    manifest: Value,
+    payload: &[u8],
+    reason: Option<String>,
+) -> Result<(StoredVersion, bool), ApiError> {
+    let digest = digest(payload);
+    state.stores().blobs.put(BlobKind::Payload, &digest, payload).await?;
+    let new = NewVersion {
+        table: table.to_owned(),
+        digest,
+        manifest,
+        state: if reason.is_some() { VersionState::Quarantined } else { VersionState::Published },
+        spec_digest: None,
+        reason,
+    };
+    Ok(state.stores().metadata.add_version(new, None).await?)
+}
+
+/// Keeps what came for inspection: the manifest as a line of JSON, then the payload. It has a digest of its own, so that the same
+/// payload may come again with a better manifest.
+async fn quarantine(
+    state: &AppState,
+    table: &str,
+    token: &str,
+    Uploaded { manifest, payload }: &Uploaded,
+    faults: Vec<String>,
+) -> Result<ApiError, ApiError> {
+    let whole = [manifest.to_string().as_bytes(), b"\n", payload].concat();
+    let (kept, _) = keep(state, table, manifest.clone(), &whole, Some(faults.join("; "))).await?;
+    tracing::info!(table, version = kept.number, token, "table uploaded, and quarantined");
+    Ok(ApiError::Quarantined { faults, version: kept.number, digest: kept.digest })
 }

@@ -246,6 +246,14 @@ mod tests {
     }
 
     #[test]
+    fn the_documents_name_every_setting() {
+        let page = include_str!("../../../../docs/operations.md");
+        for name in leaves(&Table::try_from(Settings::default()).unwrap(), "") {
+            assert!(page.contains(&format!("| `{name}` |")), "docs/operations.md lacks {name}");
+        }
+    }
+
+    #[test]
     fn what_is_wrong_is_named_with_its_place() {
         for (file, environment, flags, needles) in [
             (Some("lisen = 1"), &[][..], &[][..], &["ltc.toml", "lisen"][..]),

@@ -7,7 +7,7 @@ use std::task::{Context, Poll};
 use axum::body::{Body, Bytes, HttpBody};
 use axum::http::{Method, Request, StatusCode};
 use hyper::body::Frame;
-use ltc_service::Limits;
+use ltc_service::{Limits, Settings};
 
 use crate::support::*;
 
@@ -235,7 +235,7 @@ async fn thousands_of_malformed_requests_give_no_5xx() {
         (state >> 33) as usize % n
     };
     let mut seen = std::collections::BTreeMap::<u16, u32>::new();
-    for i in 0..3000 {
+    for i in 0..6000 {
         let mut path = if i % 2 == 0 { at(ISO, "1", "/lookup?") } else { "/v1/tables/".to_owned() };
         for _ in 0..1 + next(6) {
             path += pieces[next(pieces.len())];
@@ -248,4 +248,77 @@ async fn thousands_of_malformed_requests_give_no_5xx() {
     for status in [400, 404, 422] {
         assert!(seen.get(&status).is_some_and(|n| *n > 50), "the requests are of many kinds: {seen:?}");
     }
+}
+
+#[tokio::test]
+async fn thousands_of_malformed_writes_give_no_5xx_and_change_nothing() {
+    let limits = Limits { writes_per_second: 0, ..Limits::default() };
+    let service = Service::with(Settings { limits, ..Settings::default() }).await;
+    let routes = [
+        ("PUT", "/v1/tables/ggx-isotropic/aliases/stable"),
+        ("POST", "/v1/tables/ggx-isotropic/versions"),
+        ("POST", "/v1/refits"),
+        ("DELETE", "/v1/refits/x"),
+        ("POST", "/v1/benchmarks"),
+    ];
+    let types = [
+        "application/json",
+        "text/plain",
+        "multipart/form-data; boundary=b",
+        "multipart/form-data",
+        "",
+        "a/b;c",
+    ];
+    let pieces = [
+        "{",
+        "}",
+        "[",
+        "]",
+        "\"",
+        ":",
+        ",",
+        "null",
+        "1e999",
+        "-1",
+        "\"version\"",
+        "\"preset\"",
+        "\"spec\"",
+        "\"name\"",
+        "\"run\"",
+        "\"ggx-isotropic\"",
+        "\u{0}",
+        "--b\r\n",
+        "--b--",
+        "content-disposition: form-data; name=\"manifest\"\r\n\r\n",
+        "\\ud800",
+        "é",
+    ];
+    let before = get(&service.app, "/v1/tables/ggx-isotropic").await.body;
+    let mut state = 41_u64;
+    let mut next = |n: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % n
+    };
+    let mut seen = std::collections::BTreeMap::<u16, u32>::new();
+    for i in 0..4000 {
+        let (method, path) = routes[next(routes.len())];
+        let body: String = (0..next(12)).map(|_| pieces[next(pieces.len())]).collect();
+        let bad = "Bearer ltc_0123456789ab_x";
+        let authorization = if i % 4 == 0 { bad } else { &service.token };
+        let headers = [
+            ("content-type", types[next(types.len())]),
+            ("authorization", authorization),
+            ("if-match", "\"x\""),
+        ];
+        let answer = send(&service.app, method, path, &headers, body.clone()).await;
+        let status = answer.status.as_u16();
+        assert!((400..500).contains(&status), "{method} {path} {body:?}: {status}");
+        *seen.entry(status).or_default() += 1;
+    }
+    for status in [400, 401, 404, 415] {
+        assert!(seen.get(&status).is_some_and(|n| *n > 50), "the requests are of many kinds: {seen:?}");
+    }
+    assert_eq!(get(&service.app, "/v1/tables/ggx-isotropic").await.body, before);
+    assert_eq!(get(&service.app, "/v1/refits").await.body, "{\"refits\":[]}");
+    assert_eq!(get(&service.app, "/v1/benchmarks").await.body, "{\"benchmarks\":[]}");
 }
