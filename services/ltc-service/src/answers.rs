@@ -9,7 +9,7 @@ use axum::response::Response;
 use crate::cache::Cache;
 use crate::metrics::RouteLabel;
 use crate::preconditions::accepts_gzip;
-use crate::representation::{Rendered, not_modified};
+use crate::representation::Rendered;
 
 /// What a kept answer costs besides its body: headers and the path.
 const HEAD_BYTES: usize = 4096;
@@ -63,20 +63,9 @@ impl Answers {
         }
         let mut tags = headers.get_all(header::IF_NONE_MATCH).iter();
         let response = match (tags.next(), tags.next()) {
-            (None, _) => {
-                let bytes = &rendered.content.bytes;
-                let head = *request.method() == Method::HEAD;
-                let body = if head { Body::empty() } else { Body::from(bytes.clone()) };
-                let mut response = Response::new(body);
-                *response.headers_mut() = rendered.headers.clone();
-                // A body says its length itself; an empty one in place of it cannot.
-                if head {
-                    response.headers_mut().insert(header::CONTENT_LENGTH, bytes.len().into());
-                }
-                response
-            }
+            (None, _) => rendered.whole(*request.method() == Method::HEAD),
             (Some(tag), None) if tag.as_bytes() == rendered.content.etag.as_bytes() => {
-                not_modified(rendered.headers.clone())
+                rendered.not_modified()
             }
             // Lists and weak tags are read with more care elsewhere.
             _ => return None,

@@ -86,10 +86,37 @@ pub(crate) struct Representation {
 /// An answer of 200 that may be given again to the same question.
 #[derive(Clone, Debug)]
 pub(crate) struct Rendered {
-    pub headers: HeaderMap,
+    headers: HeaderMap,
+    /// Those of a 304.
+    headers_of_news: HeaderMap,
     pub content: Tagged,
     /// Whether it holds whatever is published.
     pub immutable: bool,
+}
+
+impl Rendered {
+    /// With the headers that every answer has, so that nothing but the request's id is added to them later.
+    fn new(mut headers: HeaderMap, content: Tagged, immutable: bool) -> Self {
+        crate::headers::add(&mut headers);
+        Self { headers_of_news: without_content(headers.clone()), headers, content, immutable }
+    }
+
+    /// The answer of 200; for `HEAD` without its body.
+    pub(crate) fn whole(&self, head: bool) -> Response {
+        let bytes = &self.content.bytes;
+        let mut response = Response::new(if head { Body::empty() } else { Body::from(bytes.clone()) });
+        *response.headers_mut() = self.headers.clone();
+        // A body says its length itself; an empty one in place of it cannot.
+        if head {
+            response.headers_mut().insert(header::CONTENT_LENGTH, bytes.len().into());
+        }
+        response
+    }
+
+    /// The answer of 304.
+    pub(crate) fn not_modified(&self) -> Response {
+        news(self.headers_of_news.clone())
+    }
 }
 
 impl Representation {
@@ -157,11 +184,11 @@ impl Representation {
                 let reason = "the current representation is not one that If-Match names".to_owned();
                 Err(ApiError::PreconditionFailed { reason })
             }
-            Wanted::NotModified => Ok(not_modified(headers)),
+            Wanted::NotModified => Ok(news(without_content(headers))),
             Wanted::Part(Part::Whole) => {
                 let rendered = kept.then(|| {
                     let (headers, content) = (headers.clone(), content.clone());
-                    Arc::new(Rendered { headers, content, immutable: caching == Caching::Immutable })
+                    Arc::new(Rendered::new(headers, content, caching == Caching::Immutable))
                 });
                 let mut response = (headers, Body::from(content.bytes)).into_response();
                 if let Some(rendered) = rendered {
@@ -181,11 +208,16 @@ impl Representation {
     }
 }
 
-/// 304 with the headers that tell a cache what it has.
-pub(crate) fn not_modified(mut headers: HeaderMap) -> Response {
+/// Without the headers that are about a body.
+fn without_content(mut headers: HeaderMap) -> HeaderMap {
     for name in [header::CONTENT_TYPE, header::CONTENT_DISPOSITION, header::CONTENT_ENCODING] {
         headers.remove(name);
     }
+    headers
+}
+
+/// 304 with these headers.
+fn news(headers: HeaderMap) -> Response {
     let mut response = Response::new(Body::empty());
     *response.status_mut() = StatusCode::NOT_MODIFIED;
     *response.headers_mut() = headers;

@@ -27,12 +27,22 @@ impl RequestId {
         headers.get(&X_REQUEST_ID).filter(|v| is_plain(v.as_bytes())).cloned().map_or_else(Self::fresh, Self)
     }
 
-    /// Unique, not secret: a number drawn for the process, and a count.
+    /// Unique, not secret: a number drawn for the process, and a count. Written by hand: every answer has one.
     fn fresh() -> Self {
         static PROCESS: LazyLock<u64> = LazyLock::new(|| RandomState::new().hash_one(std::process::id()));
         static COUNT: AtomicU64 = AtomicU64::new(1);
-        let text = format!("{:016x}-{:x}", *PROCESS, COUNT.fetch_add(1, Ordering::Relaxed));
-        Self(HeaderValue::from_str(&text).unwrap_or(HeaderValue::from_static("unnamed")))
+        let mut text = [b'-'; 33];
+        write_hex(*PROCESS, &mut text[..16]);
+        write_hex(COUNT.fetch_add(1, Ordering::Relaxed), &mut text[17..]);
+        Self(HeaderValue::from_bytes(&text).unwrap_or(HeaderValue::from_static("unnamed")))
+    }
+}
+
+/// The last digits of a number, with zeros before it.
+fn write_hex(mut number: u64, out: &mut [u8]) {
+    for digit in out.iter_mut().rev() {
+        *digit = b"0123456789abcdef"[(number & 15) as usize];
+        number >>= 4;
     }
 }
 
@@ -50,6 +60,9 @@ mod tests {
         let (a, b) = (RequestId::fresh(), RequestId::fresh());
         assert_ne!(a, b);
         assert!(is_plain(a.as_str().as_bytes()));
+        let mut text = [0; 4];
+        write_hex(0x0a_bcde, &mut text);
+        assert_eq!(&text, b"bcde");
     }
 
     #[test]

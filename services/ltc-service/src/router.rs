@@ -118,7 +118,7 @@ mod tests {
         let state = AppState::new(Stores::of(Arc::new(MemoryStore::default())), settings).await.unwrap();
         let app: Gate = surrounded(routes, state);
         let request = Request::get(path).body(Body::empty()).unwrap();
-        let (parts, body) = app.answer(request).await.into_parts();
+        let (parts, body) = app.answer(request, None).await.into_parts();
         let body = body.collect().await.unwrap().to_bytes();
         (Response::from_parts(parts, ()), serde_json::from_slice(&body).unwrap())
     }

@@ -18,7 +18,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 use tokio::task::JoinSet;
 
 use crate::AppState;
-use crate::gate::{Gate, Peer};
+use crate::gate::Gate;
 use crate::router::gate;
 use crate::settings::Limits;
 use crate::stop::{Stop, on_signals, wait};
@@ -183,7 +183,7 @@ impl Connections {
         let gate = self.gate.clone();
         let service = service_fn(move |request: Request<Incoming>| {
             let gate = gate.clone();
-            async move { Ok::<_, Infallible>(gate.answer(of_connection(request, peer)).await) }
+            async move { Ok::<_, Infallible>(gate.answer(with_body(request), Some(peer.ip())).await) }
         });
         let connection = self.protocol.serve_connection(TokioIo::new(stream), service);
         let connection = self.graceful.watch(connection);
@@ -213,10 +213,7 @@ impl Connections {
     }
 }
 
-/// A request with the address that it came from.
-fn of_connection(request: Request<Incoming>, peer: SocketAddr) -> Request<Body> {
-    // Most have no body, and then need no box for one.
-    let mut request = request.map(|body| if body.is_end_stream() { Body::empty() } else { Body::new(body) });
-    request.extensions_mut().insert(Peer(peer));
-    request
+/// A request as handlers take it. Most have no body, and then need no box for one.
+fn with_body(request: Request<Incoming>) -> Request<Body> {
+    request.map(|body| if body.is_end_stream() { Body::empty() } else { Body::new(body) })
 }
