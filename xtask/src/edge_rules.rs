@@ -43,6 +43,10 @@ pub const RULES: &[Rule] = &[
         targets: &["axum", "tokio", "ltc-fit", "ltc-reference", "ltc-service"],
     },
     Rule::Never { from: "ltc-render", targets: &["axum", "tokio", "ltc-fit", "ltc-service"] },
+    // What is kept is kept without a server and without a fit; fits run in workers without a server.
+    Rule::OursOnly { from: "ltc-store", allowed: &["ltc-core", "ltc-table"] },
+    Rule::Never { from: "ltc-store", targets: &["wgpu", "axum", "ltc-fit"] },
+    Rule::Never { from: "ltc-refit", targets: &["wgpu", "axum"] },
     // The service runs where there is no GPU.
     Rule::Never { from: "ltc-service", targets: &["wgpu", "ltc-shade-gpu", "ltc-render"] },
     // The ends of the graph stay ends.

@@ -63,7 +63,7 @@ pub fn compare(
 
 impl ErrorFigures {
     /// Over the pixels where `mask` is true.
-    fn of(test: &Image, reference: &Image, mask: &[bool]) -> Self {
+    pub fn of(test: &Image, reference: &Image, mask: &[bool]) -> Self {
         let mut figures = Self::default();
         let (mut squares, mut truth) = (0.0, 0.0);
         for ((a, b), compared) in test.pixels().iter().zip(reference.pixels()).zip(mask) {

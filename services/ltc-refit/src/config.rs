@@ -1,6 +1,6 @@
 //! What the refits may take.
 
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use ltc_fit::progress::{CHANNELS, ENTRIES, JOINT};
 use ltc_fit::{Cost, FitSpec, Limits};
@@ -25,7 +25,8 @@ pub struct RefitConfig {
     pub shard: Duration,
     /// After this time without a sign of life a worker counts as dead.
     pub lease: Duration,
-    /// What names the program: only checkpoints of the same one are gone on from, since another may fit otherwise.
+    /// What names the program, by default its version, size and date: only checkpoints of the same one are gone on from, since
+    /// another may fit otherwise.
     pub program: String,
 }
 
@@ -41,9 +42,22 @@ impl Default for RefitConfig {
             piece_seconds: 10.0,
             shard: Duration::from_secs(1),
             lease: Duration::from_secs(30),
-            program: concat!("ltc-refit ", env!("CARGO_PKG_VERSION")).to_owned(),
+            program: program(),
         }
     }
+}
+
+/// What names this build of the program.
+fn program() -> String {
+    let metadata = std::env::current_exe().and_then(std::fs::metadata);
+    let build = metadata.map_or_else(
+        |_| String::new(),
+        |m| {
+            let since = |t: SystemTime| t.duration_since(SystemTime::UNIX_EPOCH).map_or(0, |d| d.as_nanos());
+            format!(", {} bytes, {}", m.len(), m.modified().map_or(0, since))
+        },
+    );
+    concat!("ltc-refit ", env!("CARGO_PKG_VERSION")).to_owned() + &build
 }
 
 impl RefitConfig {

@@ -1,6 +1,7 @@
 //! One file for each verb.
 
 pub mod backup;
+pub mod bench;
 pub mod diff;
 pub mod export;
 pub mod fit;

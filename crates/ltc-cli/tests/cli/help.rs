@@ -2,7 +2,7 @@
 
 use crate::support::ltc;
 
-const VERBS: [&str; 13] = [
+const VERBS: [&str; 14] = [
     "serve",
     "fit",
     "tables",
@@ -13,6 +13,7 @@ const VERBS: [&str; 13] = [
     "integrate",
     "export",
     "render",
+    "bench",
     "token",
     "backup",
     "restore",
