@@ -89,7 +89,11 @@ impl Run<'_> {
                 self.insist(|run| run.shared.keep(run.claim, &fitted)).await?
             }
         };
-        self.insist(|run| run.shared.point(run.claim, &version)).await
+        let outcome = self.insist(|run| run.shared.point(run.claim, &version)).await?;
+        if let Some(hook) = self.shared.published.get() {
+            hook().await;
+        }
+        Ok(outcome)
     }
 
     /// Fits, and reports while that goes on.
