@@ -100,7 +100,7 @@ impl Run<'_> {
     async fn fit(&self, spec: FitSpec) -> Result<TableVersion, End> {
         let cost = Cost::of(&spec);
         self.shared.config.allows(&spec, &cost).map_err(|e| End::Failed(e.to_string()))?;
-        let live = Arc::new(Live::new(&cost));
+        let live = Arc::new(Live::new(&cost, self.claim.job.progress));
         let (blobs, runtime) = (Arc::clone(&self.shared.blobs), tokio::runtime::Handle::current());
         let checkpoints = Checkpoints::new(blobs, runtime, self.claim);
         let table = fitting::start(spec, checkpoints, Arc::clone(&live), &self.shared.config);
