@@ -43,10 +43,17 @@ pub const RULES: &[Rule] = &[
         targets: &["axum", "tokio", "ltc-fit", "ltc-reference", "ltc-service"],
     },
     Rule::Never { from: "ltc-render", targets: &["axum", "tokio", "ltc-fit", "ltc-service"] },
+    // What is kept is kept without a server and without a fit; fits run in workers without a server.
+    Rule::OursOnly { from: "ltc-store", allowed: &["ltc-core", "ltc-table"] },
+    Rule::Never { from: "ltc-store", targets: &["wgpu", "axum", "ltc-fit"] },
+    Rule::Never { from: "ltc-refit", targets: &["wgpu", "axum"] },
     // The service runs where there is no GPU.
     Rule::Never { from: "ltc-service", targets: &["wgpu", "ltc-shade-gpu", "ltc-render"] },
     // The ends of the graph stay ends.
     Rule::OnlyBy { target: "ltc-service", by: TOPS },
+    // Whoever only fetches tables compiles no server and no fitter.
+    Rule::OursOnly { from: "ltc-client", allowed: &["ltc-table"] },
+    Rule::Never { from: "ltc-client", targets: &["wgpu", "axum", "tokio", "rayon"] },
     Rule::OnlyBy { target: "ltc-cli", by: TOPS },
     // Every command of the README compiles this crate first.
     Rule::Never { from: "xtask", targets: &["wgpu", "axum", "tokio"] },

@@ -10,25 +10,26 @@ use crate::say::say;
 use crate::{apt, process};
 
 const NUMPY: &str = "numpy>=1.24,<3";
+const REQUESTS: &str = "requests>=2.28,<3";
 const KTX_PARSE: &str = "ktx-parse@2.0.0";
 
-/// A Python that has NumPy, in a virtual environment.
+/// A Python that has NumPy and requests, in a virtual environment.
 pub fn python(target: &Path) -> Result<PathBuf> {
     let folder = target.join("venv");
     let python = folder.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
     // Asked, not remembered: an installation that was cut short answers no, and is made anew.
-    let has_numpy = || process::works(Command::new(&python).args(["-c", "import numpy"]));
-    if has_numpy() {
+    let has_both = || process::works(Command::new(&python).args(["-c", "import numpy, requests"]));
+    if has_both() {
         return Ok(python);
     }
     let can_make = || process::works(Command::new("python3").args(["-c", "import venv, ensurepip"]));
     need("python3 with its module venv", can_make, &["python3", "python3-venv"])?;
-    say(format_args!("    putting NumPy into {}", folder.display()));
+    say(format_args!("    putting NumPy and requests into {}", folder.display()));
     empty(&folder)?;
     process::run(Command::new("python3").args(["-m", "venv"]).arg(&folder))?;
-    process::run(Command::new(&python).args(["-m", "pip", "install", "--quiet", NUMPY]))?;
-    if !has_numpy() {
-        bail!("NumPy is installed in {} and cannot be imported", folder.display());
+    process::run(Command::new(&python).args(["-m", "pip", "install", "--quiet", NUMPY, REQUESTS]))?;
+    if !has_both() {
+        bail!("NumPy and requests are installed in {} and cannot be imported", folder.display());
     }
     Ok(python)
 }

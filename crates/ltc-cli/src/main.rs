@@ -46,6 +46,9 @@ enum Command {
     Export(commands::export::Export),
     Render(commands::render::Render),
     Bench(commands::bench::Bench),
+    Token(commands::token::Tokens),
+    Backup(commands::backup::Backup),
+    Restore(commands::backup::Restore),
 }
 
 fn main() -> ExitCode {
@@ -63,6 +66,9 @@ fn main() -> ExitCode {
         Command::Export(command) => command.run(tables),
         Command::Render(command) => command.run(tables),
         Command::Bench(command) => command.run(tables),
+        Command::Token(command) => command.run(),
+        Command::Backup(command) => command.run(),
+        Command::Restore(command) => command.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

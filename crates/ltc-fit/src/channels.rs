@@ -1,10 +1,14 @@
 //! Magnitude and Fresnel: by quadrature at the entries, then so that what is interpolated is right between them.
 
 use ltc_core::points::SplitMix64;
-use ltc_table::{Axis, lookup::Corner};
+use ltc_table::{Axis, Query, lookup::Corner};
 use rayon::prelude::*;
 
-use crate::{Brdf, DiskRule, FitError, Lattice, Lobe, Observer, Progress, draw, joint::query_corners};
+use crate::{
+    Brdf, DiskRule, FitError, Lattice, Lobe, draw,
+    joint::query_corners,
+    pieces::{self, Item},
+};
 
 /// Settings of [`fit_channels`].
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -25,43 +29,92 @@ pub type Channels = (Vec<f64>, Vec<f64>);
 /// random queries up to grazing, held to their own values where few queries come.
 ///
 /// # Errors
-/// [`FitError::Stopped`] when the observer says so.
+/// None for valid axes and settings.
 pub fn fit_channels(
     brdf: &dyn Brdf,
     axes: &[Axis],
     lattice: &Lattice,
     settings: ChannelSettings,
-    observer: Observer<'_>,
 ) -> Result<Channels, FitError> {
-    let rule = DiskRule::of_about(settings.samples);
-    let own: Result<Vec<(f64, f64)>, FitError> = lattice
-        .nodes
-        .par_iter()
-        .map_init(Lobe::default, |lobe, node| Ok(brdf.albedo(node.wo(), node.widths()?, &rule, lobe)))
-        .collect();
-    let (magnitude, fresnel): (Vec<f64>, Vec<f64>) = own?.into_iter().unzip();
-    report(observer, 1)?;
-    if settings.queries == 0 {
-        return Ok((magnitude, fresnel));
-    }
-    let rows = sample_rows(brdf, axes, lattice, settings, &rule)?;
-    report(observer, 2)?;
-    let solve = |start: &[f64], value: fn(&Row) -> f64| tied(lattice, &least_squares(start, &rows, value));
-    let (mut magnitude, mut fresnel) =
-        rayon::join(|| solve(&magnitude, |r| r.magnitude), || solve(&fresnel, |r| r.fresnel));
-    // No surface reflects more than it gets (or its model lets it), and a Fresnel weight is at most 1: least squares alone
-    // may say otherwise.
-    for (n, f) in magnitude.iter_mut().zip(&mut fresnel) {
-        *n = n.clamp(0.0, brdf.max_magnitude());
-        *f = f.clamp(0.0, *n);
-    }
-    report(observer, 3)?;
-    Ok((magnitude, fresnel))
+    let stage = ChannelStage::new(brdf, axes, lattice, settings);
+    stage.finish(&pieces::all(stage.len(), |lobe, i| stage.item(lobe, i))?)
 }
 
-fn report(observer: Observer<'_>, done: usize) -> Result<(), FitError> {
-    let go_on = observer(Progress { stage: "magnitude and Fresnel", done, total: 3, tv: None });
-    if go_on { Ok(()) } else { Err(FitError::Stopped) }
+/// [`fit_channels`] as numbered evaluations, the entries and then the queries, that can be done in parts.
+pub(crate) struct ChannelStage<'a> {
+    brdf: &'a dyn Brdf,
+    axes: &'a [Axis],
+    lattice: &'a Lattice,
+    rule: DiskRule,
+    queries: Vec<Query>,
+}
+
+impl<'a> ChannelStage<'a> {
+    pub(crate) fn new(
+        brdf: &'a dyn Brdf,
+        axes: &'a [Axis],
+        lattice: &'a Lattice,
+        settings: ChannelSettings,
+    ) -> Self {
+        let rule = DiskRule::of_about(settings.samples);
+        let isotropic = axes.len() == 2;
+        let queries = draw::grazing(&mut SplitMix64::new(settings.seed), settings.queries, isotropic);
+        Self { brdf, axes, lattice, rule, queries }
+    }
+
+    /// Evaluations in all.
+    pub(crate) fn len(&self) -> usize {
+        self.lattice.nodes.len() + self.queries.len()
+    }
+
+    /// Magnitude and Fresnel term at an entry or a query.
+    pub(crate) fn item(&self, lobe: &mut Lobe, index: usize) -> Result<Item, FitError> {
+        let nodes = &self.lattice.nodes;
+        let (wo, alpha) = match nodes.get(index) {
+            Some(node) => (node.wo(), node.widths()?),
+            None => {
+                let query = &self.queries[index - nodes.len()];
+                (crate::direction(query.theta, query.phi), query.validate()?)
+            }
+        };
+        let (magnitude, fresnel) = self.brdf.albedo(wo, alpha, &self.rule, lobe);
+        Ok([magnitude, fresnel, 0.0])
+    }
+
+    /// The channels, from all evaluations.
+    pub(crate) fn finish(&self, items: &[Item]) -> Result<Channels, FitError> {
+        let (own, between) = items.split_at(self.lattice.nodes.len().min(items.len()));
+        let (magnitude, fresnel): (Vec<f64>, Vec<f64>) = own.iter().map(|item| (item[0], item[1])).unzip();
+        if between.is_empty() {
+            return Ok((magnitude, fresnel));
+        }
+        let rows: Vec<Row> = self
+            .queries
+            .par_iter()
+            .zip(between)
+            .map(|(query, item)| self.row(query, item))
+            .collect::<Result<_, _>>()?;
+        let solve =
+            |start: &[f64], value: fn(&Row) -> f64| tied(self.lattice, &least_squares(start, &rows, value));
+        let (mut magnitude, mut fresnel) =
+            rayon::join(|| solve(&magnitude, |r| r.magnitude), || solve(&fresnel, |r| r.fresnel));
+        // No surface reflects more than it gets (or its model lets it), and a Fresnel weight is at most 1: least squares
+        // alone may say otherwise.
+        for (n, f) in magnitude.iter_mut().zip(&mut fresnel) {
+            *n = n.clamp(0.0, self.brdf.max_magnitude());
+            *f = f.clamp(0.0, *n);
+        }
+        Ok((magnitude, fresnel))
+    }
+
+    /// The equation of a query, for the entries that own themselves: those that share a lobe share a value.
+    fn row(&self, query: &Query, item: &Item) -> Result<Row, FitError> {
+        let mut corners = query_corners(self.axes, &query.fold()?);
+        for corner in &mut corners {
+            corner.index = self.lattice.ties[corner.index].owner;
+        }
+        Ok(Row { corners, magnitude: item[0], fresnel: item[1] })
+    }
 }
 
 /// One equation: the interpolation of some entries is a value.
@@ -75,30 +128,6 @@ impl Row {
     fn interpolate(&self, x: &[f64]) -> f64 {
         self.corners.iter().map(|c| c.weight * x[c.index]).sum()
     }
-}
-
-/// Equations for the entries that own themselves: those that share a lobe share a value.
-fn sample_rows(
-    brdf: &dyn Brdf,
-    axes: &[Axis],
-    lattice: &Lattice,
-    settings: ChannelSettings,
-    rule: &DiskRule,
-) -> Result<Vec<Row>, FitError> {
-    let isotropic = axes.len() == 2;
-    let queries = draw::grazing(&mut SplitMix64::new(settings.seed), settings.queries, isotropic);
-    queries
-        .par_iter()
-        .map_init(Lobe::default, |lobe, query| {
-            let wo = crate::direction(query.theta, query.phi);
-            let (magnitude, fresnel) = brdf.albedo(wo, query.validate()?, rule, lobe);
-            let mut corners = query_corners(axes, &query.fold()?);
-            for corner in &mut corners {
-                corner.index = lattice.ties[corner.index].owner;
-            }
-            Ok(Row { corners, magnitude, fresnel })
-        })
-        .collect()
 }
 
 /// Weight of an entry's own value against one query at it.

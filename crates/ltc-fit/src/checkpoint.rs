@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::{FitError, FitRun, FitSpec, FitState, Fitted, Observer, Plan};
 
 /// What every checkpoint begins with; its number changes with the meaning of [`FitState`].
-const MAGIC: &str = "ltc-fit checkpoint 1 ";
+const MAGIC: &str = "ltc-fit checkpoint 2 ";
 
 /// Keeps one checkpoint of one fit.
 pub trait Store {

@@ -99,7 +99,14 @@ pub struct EntryStage<'a> {
 }
 
 /// Entries that are fitted in one piece: a second's work or less, and enough for many threads.
-const PIECE: usize = 256;
+pub(crate) const PIECE: usize = 256;
+
+impl EntrySettings {
+    /// Whether entries start from each other, so that all are fitted in one piece.
+    pub(crate) fn is_chained(&self) -> bool {
+        self.continuation || self.optimiser.form().is_some()
+    }
+}
 
 impl EntryStage<'_> {
     /// The owners to fit next when so many are done: a few hundred, or all that are left where entries start from each other.
@@ -124,7 +131,7 @@ impl EntryStage<'_> {
     }
 
     fn is_chained(&self) -> bool {
-        self.settings.continuation || self.settings.optimiser.form().is_some()
+        self.settings.is_chained()
     }
 
     fn alone(&self, which: Range<usize>, observer: Observer<'_>) -> Result<Vec<EntryFit>, FitError> {

@@ -6,13 +6,13 @@ use ltc_table::{Axis, Floors, GridErrors, Quantity, Query, Table};
 use rayon::prelude::*;
 
 use crate::{
-    Brdf, DiskPoints, DiskRule, FitError, Lattice, Layout, Lobe, Node,
+    Brdf, DiskPoints, DiskRule, FitError, Lattice, Layout, Lobe, Node, Reader,
     measure::{MEASURE_SHIFT, MeasureSettings, maximum, mean},
     total_variation,
 };
 
 /// Nodes of the quadrature that magnitude and Fresnel are held against: right to 3e-5 in the mean, see [`DiskRule`].
-const ALBEDO_NODES: usize = 2048;
+pub(crate) const ALBEDO_NODES: usize = 2048;
 
 /// What a lookup misses by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,18 @@ pub struct Miss {
     pub magnitude: f64,
     /// Fresnel term − its integral.
     pub fresnel: f64,
+}
+
+impl From<Miss> for [f64; 3] {
+    fn from(miss: Miss) -> Self {
+        [miss.tv, miss.magnitude, miss.fresnel]
+    }
+}
+
+impl From<[f64; 3]> for Miss {
+    fn from([tv, magnitude, fresnel]: [f64; 3]) -> Self {
+        Self { tv, magnitude, fresnel }
+    }
 }
 
 /// The summary of [`node_misses`] and [`centre_misses`].
@@ -37,23 +49,28 @@ pub fn grid_errors(
 ) -> Result<GridErrors, FitError> {
     let nodes = node_misses(brdf, table, floors)?;
     let centres = centre_misses(brdf, table, settings.layout, floors, settings.samples)?;
+    Ok(summary(table, &nodes, &centres))
+}
+
+/// The same of misses that are known.
+pub(crate) fn summary(table: &Table, nodes: &[Miss], centres: &[Miss]) -> GridErrors {
     let signed = |misses: &[Miss], of: fn(&Miss) -> f64| misses.iter().map(of).collect::<Vec<f64>>();
     let absolute = |misses: &[Miss], of: fn(&Miss) -> f64| {
         let sizes: Vec<f64> = misses.iter().map(|miss| of(miss).abs()).collect();
         (mean(&sizes), maximum(&sizes))
     };
-    let (node_magnitude_mean, node_magnitude_max) = absolute(&nodes, |m| m.magnitude);
-    let (node_fresnel_mean, node_fresnel_max) = absolute(&nodes, |m| m.fresnel);
-    let (centre_tv_mean, centre_tv_max) = absolute(&centres, |m| m.tv);
-    let (centre_magnitude_mean, centre_magnitude_max) = absolute(&centres, |m| m.magnitude);
-    let (centre_fresnel_mean, centre_fresnel_max) = absolute(&centres, |m| m.fresnel);
+    let (node_magnitude_mean, node_magnitude_max) = absolute(nodes, |m| m.magnitude);
+    let (node_fresnel_mean, node_fresnel_max) = absolute(nodes, |m| m.fresnel);
+    let (centre_tv_mean, centre_tv_max) = absolute(centres, |m| m.tv);
+    let (centre_magnitude_mean, centre_magnitude_max) = absolute(centres, |m| m.magnitude);
+    let (centre_fresnel_mean, centre_fresnel_max) = absolute(centres, |m| m.fresnel);
     let steps = steps(table);
-    Ok(GridErrors {
+    GridErrors {
         node_magnitude_mean,
-        node_magnitude_bias: mean(&signed(&nodes, |m| m.magnitude)),
+        node_magnitude_bias: mean(&signed(nodes, |m| m.magnitude)),
         node_magnitude_max,
         node_fresnel_mean,
-        node_fresnel_bias: mean(&signed(&nodes, |m| m.fresnel)),
+        node_fresnel_bias: mean(&signed(nodes, |m| m.fresnel)),
         node_fresnel_max,
         centre_tv_mean,
         centre_tv_max,
@@ -63,7 +80,7 @@ pub fn grid_errors(
         centre_fresnel_max,
         step_mean: mean(&steps),
         step_max: maximum(&steps),
-    })
+    }
 }
 
 /// What every entry's magnitude and Fresnel term miss at its own node, in table order.
@@ -72,16 +89,31 @@ pub fn grid_errors(
 /// None for a valid table.
 pub fn node_misses(brdf: &dyn Brdf, table: &Table, floors: &Floors) -> Result<Vec<Miss>, FitError> {
     let rule = DiskRule::of_about(ALBEDO_NODES);
-    let entries = table.magnitude().par_iter().zip(table.fresnel());
     let nodes = Lattice::new(table.axes(), floors).nodes;
     nodes
         .par_iter()
-        .zip(entries)
-        .map_init(Lobe::default, |lobe, (node, (magnitude, fresnel))| {
-            let albedo = brdf.albedo(node.wo(), node.widths()?, &rule, lobe);
-            Ok(Miss { tv: 0.0, magnitude: magnitude - albedo.0, fresnel: fresnel - albedo.1 })
-        })
+        .enumerate()
+        .map_init(Lobe::default, |lobe, (index, node)| node_miss(brdf, table, index, node, &rule, lobe))
         .collect()
+}
+
+/// What the magnitude and Fresnel term of one entry miss at its node.
+pub(crate) fn node_miss(
+    brdf: &dyn Brdf,
+    table: &Table,
+    index: usize,
+    node: &Node,
+    rule: &DiskRule,
+    lobe: &mut Lobe,
+) -> Result<Miss, FitError> {
+    let albedo = brdf.albedo(node.wo(), node.widths()?, rule, lobe);
+    let (magnitude, fresnel) = (table.magnitude()[index], table.fresnel()[index]);
+    Ok(Miss { tv: 0.0, magnitude: magnitude - albedo.0, fresnel: fresnel - albedo.1 })
+}
+
+/// Cells between the entries.
+pub(crate) fn cells(axes: &[Axis]) -> usize {
+    axes.iter().map(|axis| axis.len - 1).product()
 }
 
 /// What lookups miss at the centres of the cells between entries, in C order of the cells: each axis has one less than
@@ -99,27 +131,43 @@ pub fn centre_misses(
 ) -> Result<Vec<Miss>, FitError> {
     let reader = layout.reader(table)?;
     let (points, rule) = (DiskPoints::new(samples, MEASURE_SHIFT), DiskRule::of_about(ALBEDO_NODES));
-    let count: usize = table.axes().iter().map(|axis| axis.len - 1).product();
-    (0..count)
+    let at = Centres { brdf, reader: &reader, axes: table.axes(), floors, points: &points, rule: &rule };
+    (0..cells(table.axes()))
         .into_par_iter()
-        .map_init(Lobe::default, |lobe, index| {
-            let Node { theta, phi, alpha, lambda } = centre(table.axes(), index);
-            let found = reader.lookup(&Query { theta, phi, alpha_x: alpha, alpha_y: alpha * lambda })?;
-            let node = Node {
-                theta: theta.min(floors.theta_max),
-                phi,
-                alpha: alpha.max(floors.alpha),
-                lambda: lambda.max(floors.lambda),
-            };
-            let (magnitude, fresnel) = brdf.albedo(node.wo(), node.widths()?, &rule, lobe);
-            brdf.sample_lobe(node.wo(), node.widths()?, &points, lobe);
-            Ok(Miss {
-                tv: total_variation(lobe, DMat3::from_row_array(found.lobes[0].m)),
-                magnitude: found.magnitude - magnitude,
-                fresnel: found.fresnel - fresnel,
-            })
-        })
+        .map_init(Lobe::default, |lobe, index| at.miss(index, lobe))
         .collect()
+}
+
+/// What the centres of cells are held against.
+pub(crate) struct Centres<'a> {
+    pub(crate) brdf: &'a dyn Brdf,
+    pub(crate) reader: &'a Reader<'a>,
+    pub(crate) axes: &'a [Axis],
+    pub(crate) floors: &'a Floors,
+    pub(crate) points: &'a DiskPoints,
+    pub(crate) rule: &'a DiskRule,
+}
+
+impl Centres<'_> {
+    /// What a lookup misses at the centre of one cell.
+    pub(crate) fn miss(&self, index: usize, lobe: &mut Lobe) -> Result<Miss, FitError> {
+        let Self { brdf, reader, axes, floors, points, rule } = self;
+        let Node { theta, phi, alpha, lambda } = centre(axes, index);
+        let found = reader.lookup(&Query { theta, phi, alpha_x: alpha, alpha_y: alpha * lambda })?;
+        let node = Node {
+            theta: theta.min(floors.theta_max),
+            phi,
+            alpha: alpha.max(floors.alpha),
+            lambda: lambda.max(floors.lambda),
+        };
+        let (magnitude, fresnel) = brdf.albedo(node.wo(), node.widths()?, rule, lobe);
+        brdf.sample_lobe(node.wo(), node.widths()?, points, lobe);
+        Ok(Miss {
+            tv: total_variation(lobe, DMat3::from_row_array(found.lobes[0].m)),
+            magnitude: found.magnitude - magnitude,
+            fresnel: found.fresnel - fresnel,
+        })
+    }
 }
 
 /// `|M₁ − M₂| / (|M₁| + |M₂|)` of every two entries beside each other, in table order, axis by axis.

@@ -6,8 +6,8 @@ use ltc_table::{CellStats, DrawErrors, Errors, Floors, Kind, Lookup, Query, Tabl
 use rayon::prelude::*;
 
 use crate::{
-    Brdf, DiskPoints, DiskRule, EntryFit, FitError, Lattice, Layout, Lobe, Pattern, Reader, draw, fit_entry,
-    total_variation,
+    Brdf, DiskPoints, DiskRule, EntryFit, FitError, Lattice, Layout, Lobe, Node, Pattern, Reader, draw,
+    fit_entry, total_variation,
 };
 
 /// How the errors of a table are sampled.
@@ -39,16 +39,27 @@ pub fn cells(brdf: &dyn Brdf, table: &Table, floors: &Floors, samples: usize) ->
         .nodes
         .par_iter()
         .zip(table.m())
-        .map_init(Lobe::default, |lobe, (node, m)| {
-            brdf.sample_lobe(node.wo(), node.widths()?, &points, lobe);
-            Ok(total_variation(lobe, *m))
-        })
+        .map_init(Lobe::default, |lobe, (node, m)| node_tv(brdf, node, *m, &points, lobe))
         .collect();
-    Ok(CellStats {
-        tv: tv?,
-        leak: table.m().iter().map(|m| leak(*m)).collect(),
-        condition: table.m().iter().map(|m| condition(*m)).collect(),
-    })
+    Ok(cell_stats(table, tv?))
+}
+
+/// Total variation of an entry at its own node.
+pub(crate) fn node_tv(
+    brdf: &dyn Brdf,
+    node: &Node,
+    m: DMat3,
+    points: &DiskPoints,
+    lobe: &mut Lobe,
+) -> Result<f64, FitError> {
+    brdf.sample_lobe(node.wo(), node.widths()?, points, lobe);
+    Ok(total_variation(lobe, m))
+}
+
+/// The statistics of every entry, from its total variation.
+pub(crate) fn cell_stats(table: &Table, tv: Vec<f64>) -> CellStats {
+    let leak = table.m().iter().map(|m| leak(*m)).collect();
+    CellStats { tv, leak, condition: table.m().iter().map(|m| condition(*m)).collect() }
 }
 
 /// Errors over the standard draw, and the summary of `cells`. Magnitude and Fresnel over the same draw with θ up to
@@ -67,10 +78,15 @@ pub fn errors(
     let queries = draw::standard(settings.queries, settings.seed, isotropic);
     let tv = query_tv(brdf, &reader, &queries, settings.samples)?;
     let albedo = albedo_errors(brdf, &reader, settings, isotropic)?;
+    Ok(summary(draw_errors(&queries, &tv, settings, isotropic), cells, &albedo))
+}
+
+/// The errors of a table, from those at each entry and at each query.
+pub(crate) fn summary(standard_draw: DrawErrors, cells: &CellStats, albedo: &[[f64; 2]]) -> Errors {
     let magnitude: Vec<f64> = albedo.iter().map(|e| e[0]).collect();
     let fresnel: Vec<f64> = albedo.iter().map(|e| e[1]).collect();
-    Ok(Errors {
-        standard_draw: draw_errors(&queries, &tv, settings, isotropic),
+    Errors {
+        standard_draw,
         leak_max: maximum(&cells.leak),
         leak_mean: mean(&cells.leak),
         condition_max: maximum(&cells.condition),
@@ -81,7 +97,7 @@ pub fn errors(
         fresnel_mean: mean(&fresnel),
         fresnel_max: maximum(&fresnel),
         grid: None,
-    })
+    }
 }
 
 /// Total variation of what a reader gets for each query.
@@ -97,16 +113,25 @@ pub fn query_tv(
     let points = DiskPoints::new(samples, MEASURE_SHIFT);
     queries
         .par_iter()
-        .map_init(Lobe::default, |lobe, query| {
-            brdf.sample_lobe(crate::direction(query.theta, query.phi), query.validate()?, &points, lobe);
-            let Lookup { lobes, .. } = reader.lookup(query)?;
-            Ok(total_variation(lobe, DMat3::from_row_array(lobes[0].m)))
-        })
+        .map_init(Lobe::default, |lobe, query| one_tv(brdf, reader, query, &points, lobe))
         .collect()
 }
 
+/// Total variation of what a reader gets for one query.
+pub(crate) fn one_tv(
+    brdf: &dyn Brdf,
+    reader: &Reader<'_>,
+    query: &Query,
+    points: &DiskPoints,
+    lobe: &mut Lobe,
+) -> Result<f64, FitError> {
+    brdf.sample_lobe(crate::direction(query.theta, query.phi), query.validate()?, points, lobe);
+    let Lookup { lobes, .. } = reader.lookup(query)?;
+    Ok(total_variation(lobe, DMat3::from_row_array(lobes[0].m)))
+}
+
 /// Nodes of the quadrature that magnitude and Fresnel are held against: right to 1e-4, see [`DiskRule`].
-const ALBEDO_NODES: usize = 8192;
+pub(crate) const ALBEDO_NODES: usize = 8192;
 
 /// Errors of the magnitude and the Fresnel term at each query.
 fn albedo_errors(
@@ -118,13 +143,22 @@ fn albedo_errors(
     let rule = DiskRule::of_about(ALBEDO_NODES);
     draw::up_to(draw::ALBEDO_THETA_MAX_DEGREES, settings.queries, settings.seed, isotropic)
         .par_iter()
-        .map_init(Lobe::default, |lobe, query| {
-            let wo = crate::direction(query.theta, query.phi);
-            let (magnitude, fresnel) = brdf.albedo(wo, query.validate()?, &rule, lobe);
-            let found = reader.lookup(query)?;
-            Ok([(found.magnitude - magnitude).abs(), (found.fresnel - fresnel).abs()])
-        })
+        .map_init(Lobe::default, |lobe, query| albedo_error(brdf, reader, query, &rule, lobe))
         .collect()
+}
+
+/// Errors of the magnitude and the Fresnel term at one query.
+pub(crate) fn albedo_error(
+    brdf: &dyn Brdf,
+    reader: &Reader<'_>,
+    query: &Query,
+    rule: &DiskRule,
+    lobe: &mut Lobe,
+) -> Result<[f64; 2], FitError> {
+    let wo = crate::direction(query.theta, query.phi);
+    let (magnitude, fresnel) = brdf.albedo(wo, query.validate()?, rule, lobe);
+    let found = reader.lookup(query)?;
+    Ok([(found.magnitude - magnitude).abs(), (found.fresnel - fresnel).abs()])
 }
 
 /// The least total variation that any single LTC leaves at each query of the standard draw: each fitted by itself, from the

@@ -4,7 +4,8 @@ use ltc_table::digest::digest;
 
 use crate::{
     Brdf, FitError, FitSpec, Lattice, Objective,
-    entries::EntryStage,
+    entries::{EntryStage, PIECE},
+    pieces,
     progress::{CHANNELS, ENTRIES, JOINT, MEASUREMENT},
 };
 
@@ -158,6 +159,28 @@ impl Cost {
         self.seconds.iter().map(|(_, seconds)| seconds).sum()
     }
 
+    /// The longest piece of work that a [`crate::FitRun`] does at once: its stage, and seconds of one core. What a kill loses
+    /// at most.
+    pub fn longest_piece(&self, spec: &FitSpec) -> (&'static str, f64) {
+        let [entries, joint, channels, measurement] = self.seconds;
+        let share = |piece: usize, of: u64| (piece as f64 / of.max(1) as f64).min(1.0);
+        let alone = if spec.entries.is_chained() { 1.0 } else { share(PIECE, self.entries) };
+        let evaluated = |samples: usize, queries: usize| {
+            share(pieces::length(samples), self.entries.saturating_add(queries as u64))
+        };
+        let of_channels = evaluated(spec.channels.samples, spec.channels.queries);
+        let of_measurement = evaluated(spec.measure.samples, spec.measure.queries);
+        let pieces = [
+            (ENTRIES, entries.1 * alone),
+            (JOINT, joint.1 / spec.joint.steps.max(1) as f64),
+            (CHANNELS, channels.1 * of_channels),
+            (MEASUREMENT, measurement.1 * of_measurement),
+        ];
+        pieces
+            .into_iter()
+            .fold((ENTRIES, 0.0), |longest, piece| if piece.1 > longest.1 { piece } else { longest })
+    }
+
     /// # Errors
     /// [`FitError::TooLarge`], with the estimate, when the cost is above one of the limits.
     pub fn check(&self, limits: &Limits) -> Result<(), FitError> {
@@ -190,6 +213,24 @@ mod tests {
         let mut longer = spec;
         longer.joint.steps *= 10;
         assert!(Cost::of(&longer).total_seconds() > 5.0 * cost.seconds[1].1);
+    }
+
+    #[test]
+    fn the_longest_piece_is_found() {
+        let mut spec = FitSpec::preset("ggx-anisotropic").unwrap();
+        let longest = |spec: &FitSpec| Cost::of(spec).longest_piece(spec);
+        assert!(longest(&spec).1 < 0.5, "{:?}", longest(&spec));
+        // More of what is evaluated one by one makes more pieces, not longer ones.
+        (spec.measure.samples, spec.channels.queries) = (1 << 18, 1 << 20);
+        assert!(longest(&spec).1 < 0.5, "{:?}", longest(&spec));
+        spec.joint.queries = 1 << 20;
+        spec.joint.samples = 1 << 14;
+        assert_eq!(longest(&spec).0, JOINT);
+        assert!(longest(&spec).1 > 100.0, "{:?}", longest(&spec));
+        let mut chained = FitSpec::preset("ggx-anisotropic").unwrap();
+        let whole = Cost::of(&chained).seconds[0].1;
+        chained.entries.continuation = true;
+        assert!(longest(&chained).0 == ENTRIES && longest(&chained).1 > whole, "all entries in one piece");
     }
 
     #[test]

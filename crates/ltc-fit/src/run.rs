@@ -7,10 +7,12 @@ use ltc_table::{CellStats, Errors, Table};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    EntryFit, FitError, Observer, Plan, Progress, Stop, channels, entries,
-    grid_errors::grid_errors,
+    EntryFit, FitError, Observer, Plan, Progress, Stop,
+    channels::{self, ChannelStage},
+    entries, grid_errors,
     joint::{JointState, Refinement},
-    measure,
+    measurement::Measurement,
+    pieces,
     progress::{CHANNELS, ENTRIES, JOINT, MEASUREMENT},
 };
 
@@ -58,6 +60,9 @@ pub struct FitState {
     pub joint: Option<JointState>,
     /// Every `M` (column-major) after the joint refinement; empty before its end.
     pub m: Vec<[f64; 9]>,
+    /// What the stage after the joint refinement, or the measurement, has evaluated so far; empty between stages.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub evaluated: Vec<[f64; 3]>,
     /// Magnitude and Fresnel term of every entry.
     pub channels: Option<channels::Channels>,
     /// The statistics.
@@ -129,6 +134,9 @@ impl<'a> FitRun<'a> {
         if state.errors.as_ref().is_some_and(|e| state.channels.is_none() || !measured(e)) {
             return wrong("the number of statistics");
         }
+        if state.evaluated.len() > evaluations(plan, &state) {
+            return wrong("the number of evaluations");
+        }
         let mut run = Self { plan, state, refinement: None };
         if let Some(joint) = run.state.joint.take() {
             let mut refinement = run.refinement_from_entries();
@@ -146,7 +154,7 @@ impl<'a> FitRun<'a> {
         FitState { joint, ..self.state.clone() }
     }
 
-    /// Does the next piece: some entries, one joint step, or one of the later stages. `false` when nothing is left.
+    /// Does the next piece: some entries, one joint step, or some evaluations of the later stages. `false` when nothing is left.
     ///
     /// # Errors
     /// [`FitError::Stopped`] when the observer says so; the state is then that of before the piece, or after it where the
@@ -232,29 +240,31 @@ impl<'a> FitRun<'a> {
 
     fn fit_channels(&mut self, observer: Observer<'_>) -> Result<(), FitError> {
         let (plan, spec) = (self.plan, self.plan.spec());
-        let channels =
-            channels::fit_channels(plan.brdf(), &spec.axes, plan.lattice(), spec.channels, observer)?;
-        self.state.channels = Some(channels);
-        Ok(())
+        let stage = ChannelStage::new(plan.brdf(), &spec.axes, plan.lattice(), spec.channels);
+        let (items, total) = (&mut self.state.evaluated, stage.len());
+        pieces::next(items, total, spec.channels.samples, |lobe, i| stage.item(lobe, i))?;
+        let done = items.len();
+        if done == total {
+            self.state.channels = Some(stage.finish(items)?);
+            items.clear();
+        }
+        report(observer, Progress { stage: CHANNELS, done, total, tv: None })
     }
 
     fn measure(&mut self, observer: Observer<'_>) -> Result<(), FitError> {
-        let report = |done| {
-            let go_on = observer(Progress { stage: MEASUREMENT, done, total: 3, tv: None });
-            if go_on { Ok(()) } else { Err(FitError::Stopped) }
-        };
         let (brdf, spec) = (self.plan.brdf(), self.plan.spec());
         let (magnitude, fresnel) = self.state.channels.clone().unwrap_or_default();
         let m = self.state.m.iter().map(DMat3::from_cols_array).collect();
         let bare = Table::new(spec.axes.clone(), m, magnitude, fresnel, CellStats::default())?;
-        let cells = measure::cells(brdf, &bare, &spec.floors, spec.measure.samples)?;
-        report(1)?;
-        let errors = measure::errors(brdf, &bare, &cells, spec.measure)?;
-        report(2)?;
-        let grid = Some(grid_errors(brdf, &bare, &spec.floors, spec.measure)?);
-        let CellStats { tv, leak, condition } = cells;
-        self.state.errors = Some(Measured { tv, leak, condition, errors: Errors { grid, ..errors } });
-        report(3)
+        let stage = Measurement::new(brdf, &bare, &spec.floors, spec.measure)?;
+        let (items, total) = (&mut self.state.evaluated, stage.len());
+        pieces::next(items, total, spec.measure.samples, |lobe, i| stage.item(lobe, i))?;
+        let done = items.len();
+        if done == total {
+            self.state.errors = Some(stage.finish(items));
+            items.clear();
+        }
+        report(observer, Progress { stage: MEASUREMENT, done, total, tv: None })
     }
 
     fn add_time(&mut self, stage: &str, seconds: f64) {
@@ -263,4 +273,18 @@ impl<'a> FitRun<'a> {
             None => self.state.times.push(StageTime { stage: stage.to_owned(), seconds }),
         }
     }
+}
+
+/// Evaluations that a state may hold, by the stage that it is in.
+fn evaluations(plan: &Plan<'_>, state: &FitState) -> usize {
+    let (spec, nodes) = (plan.spec(), plan.lattice().nodes.len());
+    match (&state.channels, &state.errors) {
+        (None, None) if !state.m.is_empty() => nodes + spec.channels.queries,
+        (Some(_), None) => 2 * nodes + 2 * spec.measure.queries + grid_errors::cells(&spec.axes),
+        _ => 0,
+    }
+}
+
+fn report(observer: Observer<'_>, progress: Progress) -> Result<(), FitError> {
+    if observer(progress) { Ok(()) } else { Err(FitError::Stopped) }
 }

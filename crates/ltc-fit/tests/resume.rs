@@ -128,6 +128,44 @@ fn a_run_goes_on_from_every_piece() {
 }
 
 #[test]
+fn a_run_goes_on_within_the_stages_that_evaluate_one_by_one() {
+    let mut spec = small();
+    // So many samples that a piece is a few dozen evaluations.
+    (spec.channels.samples, spec.measure.samples) = (1 << 16, 1 << 16);
+    let plan = Plan::new(spec).unwrap();
+    let fit = |cut: bool| {
+        let mut run = FitRun::new(&plan);
+        let mut within = [0, 0];
+        while run.advance(&silent).unwrap() {
+            let state = run.state();
+            if !state.evaluated.is_empty() {
+                within[usize::from(state.channels.is_some())] += 1;
+            }
+            if cut {
+                let text = serde_json::to_string(&state).unwrap();
+                run = FitRun::resume(&plan, serde_json::from_str(&text).unwrap()).unwrap();
+            }
+            let mut odd = run.state();
+            odd.evaluated.extend(vec![[0.0; 3]; 100_000]);
+            assert!(matches!(FitRun::resume(&plan, odd), Err(FitError::State { .. })));
+        }
+        assert!(within[0] > 1 && within[1] > 1, "{within:?}");
+        essence(&run.finish().unwrap())
+    };
+    assert_eq!(fit(true), fit(false));
+    // The control: what was evaluated matters.
+    let mut run = FitRun::new(&plan);
+    while run.state().channels.is_none() || run.state().evaluated.is_empty() {
+        run.advance(&silent).unwrap();
+    }
+    let mut state = run.state();
+    state.evaluated[0][0] += 0.1;
+    let mut run = FitRun::resume(&plan, state).unwrap();
+    while run.advance(&silent).unwrap() {}
+    assert_ne!(essence(&run.finish().unwrap()), fit(false));
+}
+
+#[test]
 fn a_step_that_is_forgotten_is_seen() {
     // The control: the state matters.
     let plan = plan();

@@ -1,39 +1,35 @@
-//! Encoded tables, kept in memory up to a number of bytes.
+//! What was made or read once, kept in memory up to a number of bytes.
 
+use std::borrow::Borrow;
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use crate::representation::Tagged;
-
 /// A least-recently-used cache bounded by the bytes it holds.
 #[derive(Debug)]
-pub(crate) struct Cache<K> {
-    state: Mutex<State<K>>,
+pub(crate) struct Cache<K, V> {
+    state: Mutex<State<K, V>>,
     capacity: usize,
 }
 
 #[derive(Debug)]
-struct State<K> {
-    entries: HashMap<K, Entry>,
+struct State<K, V> {
+    entries: HashMap<K, Entry<V>>,
     bytes: usize,
     clock: u64,
 }
 
 #[derive(Debug)]
-struct Entry {
-    value: Tagged,
+struct Entry<V> {
+    value: V,
+    cost: usize,
     used: u64,
 }
 
 /// What an entry costs besides its bytes, roughly: many tiny entries must count as well.
 const ENTRY_BYTES: usize = 512;
 
-fn cost(value: &Tagged) -> usize {
-    value.bytes.len() + ENTRY_BYTES
-}
-
-impl<K: Clone + Eq + Hash> Cache<K> {
+impl<K: Clone + Eq + Hash, V: Clone> Cache<K, V> {
     /// A cache of at most `capacity` bytes.
     pub(crate) fn new(capacity: usize) -> Self {
         let state = State { entries: HashMap::new(), bytes: 0, clock: 0 };
@@ -41,7 +37,10 @@ impl<K: Clone + Eq + Hash> Cache<K> {
     }
 
     /// The value of a key, which is then the most recently used.
-    pub(crate) fn get(&self, key: &K) -> Option<Tagged> {
+    pub(crate) fn get<Q: Eq + Hash + ?Sized>(&self, key: &Q) -> Option<V>
+    where
+        K: Borrow<Q>,
+    {
         let mut state = self.lock();
         state.clock += 1;
         let clock = state.clock;
@@ -50,35 +49,41 @@ impl<K: Clone + Eq + Hash> Cache<K> {
         Some(entry.value.clone())
     }
 
-    /// Keeps a value, and drops the least recently used until all fit. One larger than the whole cache is not kept.
-    pub(crate) fn insert(&self, key: K, value: Tagged) {
-        let cost_of_value = cost(&value);
-        if cost_of_value > self.capacity {
+    /// Keeps a value of so many bytes, and drops the least recently used until all fit. One larger than the whole cache is not
+    /// kept.
+    pub(crate) fn insert(&self, key: K, value: V, bytes: usize) {
+        let cost = bytes + ENTRY_BYTES;
+        if cost > self.capacity {
             return;
         }
         let mut state = self.lock();
         state.remove(&key);
-        while state.bytes + cost_of_value > self.capacity {
+        while state.bytes + cost > self.capacity {
             let oldest = state.entries.iter().min_by_key(|(_, entry)| entry.used).map(|(key, _)| key.clone());
             let Some(oldest) = oldest else { break };
             state.remove(&oldest);
         }
         state.clock += 1;
-        state.bytes += cost_of_value;
+        state.bytes += cost;
         let used = state.clock;
-        state.entries.insert(key, Entry { value, used });
+        state.entries.insert(key, Entry { value, cost, used });
+    }
+
+    /// Bytes held now.
+    pub(crate) fn bytes(&self) -> usize {
+        self.lock().bytes
     }
 
     /// No change leaves the state half made, so a panic of another holder harms nothing.
-    fn lock(&self) -> MutexGuard<'_, State<K>> {
+    fn lock(&self) -> MutexGuard<'_, State<K, V>> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl<K: Eq + Hash> State<K> {
+impl<K: Eq + Hash, V> State<K, V> {
     fn remove(&mut self, key: &K) {
         if let Some(entry) = self.entries.remove(key) {
-            self.bytes -= cost(&entry.value);
+            self.bytes -= entry.cost;
         }
     }
 }
@@ -87,25 +92,17 @@ impl<K: Eq + Hash> State<K> {
 mod tests {
     use super::*;
 
-    fn value(byte: u8, len: usize) -> Tagged {
-        Tagged::new(vec![byte; len])
-    }
-
-    fn bytes(cache: &Cache<u32>) -> usize {
-        cache.lock().bytes
-    }
-
     #[test]
     fn the_least_recently_used_goes_first() {
         let cache = Cache::new(3 * (100 + ENTRY_BYTES));
         for key in 0..3 {
-            cache.insert(key, value(key as u8, 100));
+            cache.insert(key, key, 100);
         }
         assert!(cache.get(&0).is_some());
-        cache.insert(3, value(3, 100));
+        cache.insert(3, 3, 100);
         assert!(cache.get(&1).is_none(), "1 was used longest ago");
         for key in [0, 2, 3] {
-            assert_eq!(cache.get(&key).unwrap().bytes[0], key as u8);
+            assert_eq!(cache.get(&key), Some(key));
         }
     }
 
@@ -114,19 +111,19 @@ mod tests {
         let capacity = 10_000;
         let cache = Cache::new(capacity);
         for i in 0..1000_u32 {
-            cache.insert(i % 37, value(0, (i as usize * 7919) % 12_000));
-            assert!(bytes(&cache) <= capacity);
+            cache.insert(i % 37, (), (i as usize * 7919) % 12_000);
+            assert!(cache.bytes() <= capacity);
         }
-        let expected: usize = cache.lock().entries.values().map(|e| cost(&e.value)).sum();
-        assert_eq!(bytes(&cache), expected);
+        let expected: usize = cache.lock().entries.values().map(|e| e.cost).sum();
+        assert_eq!(cache.bytes(), expected);
         assert!(expected > 0, "something is kept");
     }
 
     #[test]
     fn what_is_larger_than_the_cache_displaces_nothing() {
         let cache = Cache::new(1000);
-        cache.insert(1, value(1, 10));
-        cache.insert(2, value(2, 1000));
+        cache.insert(1, (), 10);
+        cache.insert(2, (), 1000);
         assert!(cache.get(&2).is_none());
         assert!(cache.get(&1).is_some());
     }

@@ -21,6 +21,11 @@ impl ETag {
         HeaderValue::from_str(&self.0).ok()
     }
 
+    /// With its quotes.
+    pub(crate) fn as_bytes(&self) -> &[u8] {
+        self.0.as_bytes()
+    }
+
     fn is(&self, tag: &Tag<'_>) -> bool {
         self.0.as_bytes() == tag.quoted
     }
@@ -52,6 +57,11 @@ impl TagList {
     /// Whether a strong tag of the list is the same (for `If-Match`).
     pub(crate) fn matches_strongly(&self, etag: &ETag) -> bool {
         self.any(|tag| !tag.weak && etag.is(tag))
+    }
+
+    /// Whether it is `*`.
+    pub(crate) fn is_any(&self) -> bool {
+        self.0.iter().any(|line| line.as_bytes().trim_ascii() == b"*")
     }
 
     fn any(&self, mut test: impl FnMut(&Tag<'_>) -> bool) -> bool {

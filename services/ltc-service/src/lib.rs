@@ -36,17 +36,27 @@
 //! # Errors
 //! Every error is `application/problem+json` (RFC 9457); [`ApiError`] lists the types.
 
+mod answers;
+mod auth;
+mod background;
+mod binary_lookup;
 mod cache;
 mod compute;
+mod derived;
 mod error;
 mod etag;
+mod gate;
 mod headers;
+mod index;
 mod json_table;
-mod limits;
+mod metrics;
+mod openapi;
 mod params;
 mod preconditions;
 mod problem;
+mod problem_types;
 mod range;
+mod rates;
 mod representation;
 mod request_body;
 mod request_id;
@@ -54,14 +64,19 @@ mod router;
 mod routes;
 mod selected;
 mod serve;
+pub mod settings;
 mod state;
 mod stop;
+mod stores;
+mod uploaded;
 mod variant;
 
 pub use error::ApiError;
-pub use limits::Limits;
+pub use problem_types::ProblemType;
 pub use router::app;
-pub use serve::{ServeConfig, ServeError, serve, serve_until};
+pub use serve::{ServeError, serve, serve_until};
+pub use settings::{Limits, Settings};
 pub use state::AppState;
 pub use stop::Stop;
+pub use stores::Stores;
 pub use variant::{Format, Variant};

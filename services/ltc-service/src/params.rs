@@ -41,6 +41,15 @@ impl Params {
         self.number(name)?.ok_or_else(|| ApiError::invalid(name, "is missing"))
     }
 
+    /// A whole number from 1 to `most`, or `default` where there is none.
+    pub(crate) fn count(&mut self, name: &str, default: u32, most: u32) -> Result<u32, ApiError> {
+        let Some(text) = self.take(name) else { return Ok(default) };
+        let count: Option<u32> = text.parse().ok().filter(|count| (1..=most).contains(count));
+        count.ok_or_else(|| {
+            ApiError::invalid(name, format!("must be a whole number from 1 to {most}, not {text:?}"))
+        })
+    }
+
     /// Refuses what nobody asked for. `known` are the names for the message.
     pub(crate) fn finish(self, known: &[&str]) -> Result<(), ApiError> {
         match self.0.into_iter().next() {

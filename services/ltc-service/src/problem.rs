@@ -1,23 +1,22 @@
 //! Problem details, RFC 9457: the one form of every error.
 
-use axum::Json;
 use axum::body::Body;
-use axum::extract::Request;
 use axum::http::{HeaderValue, StatusCode, header};
-use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
+use serde_json::{Map, Value};
 
+use crate::problem_types::{HTTP, ProblemType};
 use crate::request_id::RequestId;
 
 /// An error on its way out; [`render`] turns it into a body once it knows the request.
 #[derive(Clone, Debug)]
 pub(crate) struct Problem {
-    pub slug: &'static str,
-    pub title: &'static str,
-    pub status: StatusCode,
+    pub kind: &'static ProblemType,
     pub detail: String,
     pub field: Option<String>,
+    /// What the document says besides.
+    pub members: Map<String, Value>,
 }
 
 #[derive(Serialize)]
@@ -27,30 +26,13 @@ struct Document<'a> {
     status: u16,
     detail: &'a str,
     instance: &'a str,
+    /// Where the service explains the type.
+    help: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     field: Option<&'a str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    request_id: Option<&'a str>,
-}
-
-impl Problem {
-    /// For an error response that came from outside of the handlers.
-    fn of_status(status: StatusCode) -> Self {
-        let title = status.canonical_reason().unwrap_or("Error");
-        Self { slug: "http", title, status, detail: title.to_owned(), field: None }
-    }
-
-    fn document<'a>(&'a self, instance: &'a str, request_id: Option<&'a RequestId>) -> Document<'a> {
-        Document {
-            r#type: format!("urn:ltc:problem:{}", self.slug),
-            title: self.title,
-            status: self.status.as_u16(),
-            detail: &self.detail,
-            instance,
-            field: self.field.as_deref(),
-            request_id: request_id.map(RequestId::as_str),
-        }
-    }
+    request_id: &'a str,
+    #[serde(flatten)]
+    members: &'a Map<String, Value>,
 }
 
 /// The text with control characters escaped: details quote what a client sent, and stay one line.
@@ -65,30 +47,46 @@ fn one_line(text: &str) -> String {
 impl IntoResponse for Problem {
     fn into_response(mut self) -> Response {
         self.detail = one_line(&self.detail);
-        let mut response = self.status.into_response();
+        let mut response = self.kind.status.into_response();
         response.extensions_mut().insert(self);
         response
     }
 }
 
-/// Gives every error response its problem document, whoever made it.
-pub(crate) async fn render(request: Request, next: Next) -> Response {
-    let path = request.uri().path().to_owned();
-    let request_id = request.extensions().get::<RequestId>().cloned();
-    let response = next.run(request).await;
+/// Gives an error response its problem document, whoever made it. Others stay as they are.
+pub(crate) fn render(response: Response, path: &str, request_id: &RequestId) -> Response {
     let status = response.status();
     if !status.is_client_error() && !status.is_server_error() {
         return response;
     }
     let (mut parts, _) = response.into_parts();
-    let problem = parts.extensions.remove::<Problem>().unwrap_or_else(|| Problem::of_status(status));
-    let (document, body) = Json(problem.document(&path, request_id.as_ref())).into_response().into_parts();
-    if document.status != StatusCode::OK {
-        // Text and numbers always serialise; should they not, the status alone still tells the truth.
-        return Response::from_parts(parts, Body::empty());
-    }
+    let problem = parts.extensions.remove::<Problem>().unwrap_or_else(|| of_status(status));
+    let title = if problem.kind == &HTTP {
+        status.canonical_reason().unwrap_or(HTTP.title)
+    } else {
+        problem.kind.title
+    };
+    let document = Document {
+        r#type: format!("urn:ltc:problem:{}", problem.kind.slug),
+        title,
+        status: status.as_u16(),
+        detail: &problem.detail,
+        instance: path,
+        help: format!("/problems/{}", problem.kind.slug),
+        field: problem.field.as_deref(),
+        request_id: request_id.as_str(),
+        members: &problem.members,
+    };
+    // Text and numbers always serialise; should they not, the status alone still tells the truth.
+    let body = serde_json::to_vec(&document).unwrap_or_default();
     parts.headers.remove(header::CONTENT_LENGTH);
     parts.headers.insert(header::CONTENT_TYPE, HeaderValue::from_static("application/problem+json"));
     parts.headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
-    Response::from_parts(parts, body)
+    Response::from_parts(parts, Body::from(body))
+}
+
+/// For an error response that came from outside of the handlers.
+fn of_status(status: StatusCode) -> Problem {
+    let detail = status.canonical_reason().unwrap_or("Error").to_owned();
+    Problem { kind: &HTTP, detail, field: None, members: Map::new() }
 }

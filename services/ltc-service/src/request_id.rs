@@ -1,14 +1,10 @@
-//! A name for each request, for its log line, its answer and its problem document.
+//! A name for each request: for its log line, its answer and its problem document.
 
 use std::hash::{BuildHasher, RandomState};
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
-use axum::extract::Request;
 use axum::http::{HeaderMap, HeaderName, HeaderValue};
-use axum::middleware::Next;
-use axum::response::Response;
 
 pub(crate) const X_REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 const MAX_LENGTH: usize = 128;
@@ -23,42 +19,36 @@ impl RequestId {
         self.0.to_str().unwrap_or_default()
     }
 
-    fn of(headers: &HeaderMap) -> Self {
-        headers.get(X_REQUEST_ID).filter(|v| is_plain(v.as_bytes())).cloned().map_or_else(Self::fresh, Self)
+    pub(crate) fn header(&self) -> HeaderValue {
+        self.0.clone()
     }
 
-    /// Unique, not secret: a number drawn for the process, and a count.
+    pub(crate) fn of(headers: &HeaderMap) -> Self {
+        headers.get(&X_REQUEST_ID).filter(|v| is_plain(v.as_bytes())).cloned().map_or_else(Self::fresh, Self)
+    }
+
+    /// Unique, not secret: a number drawn for the process, and a count. Written by hand: every answer has one.
     fn fresh() -> Self {
         static PROCESS: LazyLock<u64> = LazyLock::new(|| RandomState::new().hash_one(std::process::id()));
         static COUNT: AtomicU64 = AtomicU64::new(1);
-        let text = format!("{:016x}-{:x}", *PROCESS, COUNT.fetch_add(1, Ordering::Relaxed));
-        Self(HeaderValue::from_str(&text).unwrap_or(HeaderValue::from_static("unnamed")))
+        let mut text = [b'-'; 33];
+        write_hex(*PROCESS, &mut text[..16]);
+        write_hex(COUNT.fetch_add(1, Ordering::Relaxed), &mut text[17..]);
+        Self(HeaderValue::from_bytes(&text).unwrap_or(HeaderValue::from_static("unnamed")))
+    }
+}
+
+/// The last digits of a number, with zeros before it.
+fn write_hex(mut number: u64, out: &mut [u8]) {
+    for digit in out.iter_mut().rev() {
+        *digit = b"0123456789abcdef"[(number & 15) as usize];
+        number >>= 4;
     }
 }
 
 fn is_plain(id: &[u8]) -> bool {
     let plain = |b: &u8| b.is_ascii_alphanumeric() || b"-_.:/+=".contains(b);
     (1..=MAX_LENGTH).contains(&id.len()) && id.iter().all(plain)
-}
-
-/// Names the request, logs its end, and returns the name with the answer.
-pub(crate) async fn name_and_log(mut request: Request, next: Next) -> Response {
-    let id = RequestId::of(request.headers());
-    request.extensions_mut().insert(id.clone());
-    let (method, uri) = (request.method().clone(), request.uri().clone());
-    let start = Instant::now();
-    let mut response = next.run(request).await;
-    // The path without the query: a query may one day hold what a log must not.
-    tracing::info!(
-        request_id = id.as_str(),
-        method = method.as_str(),
-        path = uri.path(),
-        status = response.status().as_u16(),
-        microseconds = start.elapsed().as_micros() as u64,
-        "request"
-    );
-    response.headers_mut().insert(X_REQUEST_ID, id.0);
-    response
 }
 
 #[cfg(test)]
@@ -70,6 +60,9 @@ mod tests {
         let (a, b) = (RequestId::fresh(), RequestId::fresh());
         assert_ne!(a, b);
         assert!(is_plain(a.as_str().as_bytes()));
+        let mut text = [0; 4];
+        write_hex(0x0a_bcde, &mut text);
+        assert_eq!(&text, b"bcde");
     }
 
     #[test]

@@ -3,52 +3,89 @@
 use std::any::Any;
 
 use axum::Router;
-use axum::extract::{DefaultBodyLimit, Request, State};
-use axum::middleware::{Next, from_fn, from_fn_with_state};
+use axum::extract::DefaultBodyLimit;
 use axum::response::{IntoResponse, Response};
-use axum::routing::get;
+use axum::routing::{MethodRouter, any, get, post, put};
+use tower::util::MapResponseLayer;
 use tower_http::catch_panic::CatchPanicLayer;
 
-use crate::routes::{data, health, index, lookup, tables};
-use crate::{ApiError, AppState, headers, problem, request_id};
+use crate::gate::Gate;
+use crate::metrics::RouteLabel;
+use crate::routes::{
+    aliases, benchmarks, data, diff, docs, events, health, index, lookup, metrics, problems, refits, tables,
+    upload,
+};
+use crate::{ApiError, AppState};
 
-/// The service over these tables.
-pub fn app(state: AppState) -> Router {
-    let version = Router::new()
-        .route("/", get(tables::manifest))
-        .route("/data", get(data::table))
-        .route("/fresnel", get(data::fresnel))
-        .route("/lookup", get(lookup::one).post(lookup::batch));
-    let routes = Router::new()
-        .route("/", get(index::page))
-        .route("/healthz", get(health::alive))
-        .route("/readyz", get(health::ready))
-        .route("/v1/tables", get(tables::list))
-        .route("/v1/tables/{name}", get(tables::latest))
-        .route("/v1/tables/{name}/versions", get(tables::versions))
-        .nest("/v1/tables/{name}/versions/{version}", version);
-    surrounded(routes, state)
+/// Every path with its methods. `GET` answers `HEAD` too. The document at `/openapi.json` has the same paths and methods, or a
+/// test fails.
+fn routes(upload_bytes: usize) -> Vec<(&'static str, MethodRouter<AppState>)> {
+    let versions =
+        get(tables::versions).merge(post(upload::version).layer(DefaultBodyLimit::max(upload_bytes)));
+    vec![
+        ("/", get(index::page)),
+        ("/docs", get(docs::page)),
+        ("/openapi.json", get(docs::openapi)),
+        ("/problems", get(problems::list)),
+        ("/problems/{slug}", get(problems::one)),
+        ("/healthz", get(health::alive)),
+        ("/readyz", get(health::ready)),
+        ("/metrics", get(metrics::text)),
+        ("/v1/tables", get(tables::list)),
+        ("/v1/tables/{name}", get(tables::latest)),
+        ("/v1/tables/{name}/aliases", get(aliases::list)),
+        ("/v1/tables/{name}/aliases/{alias}", get(aliases::one).merge(put(aliases::moved))),
+        ("/v1/tables/{name}/versions", versions),
+        ("/v1/tables/{name}/versions/{version}", get(tables::manifest)),
+        ("/v1/tables/{name}/versions/{version}/data", get(data::table)),
+        ("/v1/tables/{name}/versions/{version}/fresnel", get(data::fresnel)),
+        ("/v1/tables/{name}/versions/{version}/lookup", get(lookup::one).merge(post(lookup::batch))),
+        ("/v1/tables/{name}/versions/{version}/diff/{other}", get(diff::between)),
+        ("/v1/refits", get(refits::list).merge(post(refits::ask))),
+        ("/v1/refits/{id}", get(refits::one).delete(refits::cancel)),
+        ("/v1/refits/{id}/events", get(events::stream)),
+        ("/v1/benchmarks", get(benchmarks::list).merge(post(benchmarks::add))),
+    ]
 }
 
-/// Gives routes their fallbacks and layers. The last layer is the outermost.
-fn surrounded(routes: Router<AppState>, state: AppState) -> Router {
-    routes
+/// The patterns that metrics are labelled with; the first stands for requests that match none.
+pub(crate) fn patterns() -> Vec<&'static str> {
+    ["none"].into_iter().chain(routes(0).into_iter().map(|(path, _)| path)).collect()
+}
+
+/// The service over a state, to be asked without a connection.
+pub fn app(state: AppState) -> Router {
+    // The gate is asked before any route is looked for: what was answered before is answered again from there.
+    Router::new().fallback_service(any(Gate::handle).with_state(gate(state)))
+}
+
+/// The service over a state.
+pub(crate) fn gate(state: AppState) -> Gate {
+    let mut router = Router::new();
+    for (index, (path, methods)) in routes(state.limits().upload_bytes).into_iter().enumerate() {
+        let label = RouteLabel(index + 1);
+        router = router.route(path, labelled(methods, label));
+    }
+    surrounded(router, state)
+}
+
+/// Says in the answer's extensions which route it is of.
+fn labelled(methods: MethodRouter<AppState>, label: RouteLabel) -> MethodRouter<AppState> {
+    methods.layer(MapResponseLayer::new(move |mut response: Response| {
+        response.extensions_mut().insert(label);
+        response
+    }))
+}
+
+/// Gives routes their fallbacks and layers, and puts the gate before them.
+fn surrounded(routes: Router<AppState>, state: AppState) -> Gate {
+    let routes = routes
         .fallback(async || ApiError::NoSuchRoute)
         .method_not_allowed_fallback(async || ApiError::MethodNotAllowed)
         .layer(DefaultBodyLimit::max(state.limits().body_bytes))
-        .layer(from_fn_with_state(state.clone(), limit_time))
         .layer(CatchPanicLayer::custom(answer_panic))
-        .layer(from_fn(problem::render))
-        .layer(from_fn(headers::add))
-        .layer(from_fn(request_id::name_and_log))
-        .with_state(state)
-}
-
-async fn limit_time(State(state): State<AppState>, request: Request, next: Next) -> Response {
-    match tokio::time::timeout(state.limits().request_time, next.run(request)).await {
-        Ok(response) => response,
-        Err(_) => ApiError::Timeout.into_response(),
-    }
+        .with_state(state.clone());
+    Gate::new(state, routes)
 }
 
 fn answer_panic(panic: Box<dyn Any + Send>) -> Response {
@@ -59,16 +96,17 @@ fn answer_panic(panic: Box<dyn Any + Send>) -> Response {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
     use std::time::Duration;
 
-    use axum::body::Body;
-    use axum::http::StatusCode;
-    use http_body_util::BodyExt;
-    use ltc_table::Catalogue;
-    use tower::ServiceExt;
-
     use super::*;
-    use crate::Limits;
+    use crate::metrics::MOST_ROUTES;
+    use crate::{Limits, Settings, Stores};
+    use axum::body::Body;
+    use axum::extract::State;
+    use axum::http::{Request, StatusCode};
+    use http_body_util::BodyExt;
+    use ltc_store::MemoryStore;
 
     async fn answer(limits: Limits, path: &str) -> (Response<()>, serde_json::Value) {
         let routes = Router::new()
@@ -76,9 +114,11 @@ mod tests {
             .route("/panic-off-thread", get(panic_off_thread))
             .route("/sleep", get(sleep))
             .route("/plain", get(async || (StatusCode::IM_A_TEAPOT, "plain text")));
-        let app = surrounded(routes, AppState::new(Catalogue::default(), limits));
+        let settings = Settings { limits, ..Settings::default() };
+        let state = AppState::new(Stores::of(Arc::new(MemoryStore::default())), settings).await.unwrap();
+        let app: Gate = surrounded(routes, state);
         let request = Request::get(path).body(Body::empty()).unwrap();
-        let (parts, body) = app.oneshot(request).await.unwrap().into_parts();
+        let (parts, body) = app.answer(request, None).await.into_parts();
         let body = body.collect().await.unwrap().to_bytes();
         (Response::from_parts(parts, ()), serde_json::from_slice(&body).unwrap())
     }
@@ -107,7 +147,7 @@ mod tests {
 
     #[tokio::test]
     async fn a_slow_answer_is_a_problem() {
-        let limits = Limits { request_time: Duration::from_millis(20), ..Limits::default() };
+        let limits = Limits { request_seconds: 0.02, ..Limits::default() };
         let (response, problem) = answer(limits, "/sleep").await;
         assert_eq!(response.status(), StatusCode::SERVICE_UNAVAILABLE);
         assert_eq!(response.headers()["retry-after"], "1");
@@ -120,5 +160,11 @@ mod tests {
         assert_eq!(response.status(), StatusCode::IM_A_TEAPOT);
         assert_eq!(response.headers()["content-type"], "application/problem+json");
         assert_eq!(problem["status"], 418);
+        assert_eq!(problem["title"], "I'm a teapot");
+    }
+
+    #[test]
+    fn every_route_has_room_in_the_metrics() {
+        assert!(patterns().len() <= MOST_ROUTES);
     }
 }

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use axum::extract::{FromRequestParts, Path};
-use axum::http::{HeaderValue, request::Parts};
+use axum::extract::{FromRequestParts, Path, RawPathParams};
+use axum::http::{HeaderName, HeaderValue, request::Parts};
 use axum::response::Response;
-use ltc_table::TableVersion;
+use ltc_table::{Manifest, TableVersion};
 
 use crate::representation::Caching;
 use crate::{ApiError, AppState};
@@ -13,9 +13,9 @@ use crate::{ApiError, AppState};
 /// From `…/tables/{name}/versions/{version}…`.
 #[derive(Clone, Debug)]
 pub(crate) struct Selected {
-    pub version: Arc<TableVersion>,
+    pub manifest: Arc<Manifest>,
     /// Whether the path names it by what cannot change: digest or number, not an alias.
-    pinned: bool,
+    pub pinned: bool,
 }
 
 impl Selected {
@@ -24,13 +24,25 @@ impl Selected {
         if self.pinned { Caching::Immutable } else { Caching::Short }
     }
 
-    /// Says in the headers which version answers, whatever the path called it.
+    /// The numbers.
+    pub(crate) async fn table(&self, state: &AppState) -> Result<Arc<TableVersion>, ApiError> {
+        state.table(&self.manifest).await
+    }
+
+    /// Headers that say which version answers, whatever the path called it.
+    pub(crate) fn names(&self) -> [(HeaderName, String); 2] {
+        let Manifest { name, version, digest, .. } = &*self.manifest;
+        [
+            (HeaderName::from_static("x-table-version"), format!("{name}@{version}")),
+            (HeaderName::from_static("x-table-digest"), digest.clone()),
+        ]
+    }
+
+    /// With those headers.
     pub(crate) fn named(&self, mut response: Response) -> Response {
-        let manifest = self.version.manifest();
-        let version = format!("{}@{}", manifest.name, manifest.version);
-        for (name, value) in [("x-table-version", &version), ("x-table-digest", &manifest.digest)] {
+        for (name, value) in self.names() {
             // Names and digests are checked on the way into a version, and are plain text.
-            if let Ok(value) = HeaderValue::from_str(value) {
+            if let Ok(value) = HeaderValue::from_str(&value) {
                 response.headers_mut().insert(name, value);
             }
         }
@@ -42,22 +54,44 @@ impl FromRequestParts<AppState> for Selected {
     type Rejection = ApiError;
 
     async fn from_request_parts(parts: &mut Parts, state: &AppState) -> Result<Self, ApiError> {
-        let Path((name, version)) = Path::<(String, String)>::from_request_parts(parts, state).await?;
-        let found = state.catalogue().version(&name, &version)?;
-        let manifest = found.manifest();
-        let pinned = version == manifest.digest || version.parse() == Ok(manifest.version);
-        Ok(Self { version: Arc::clone(found), pinned })
+        let name = path_parameter(parts, state, "name").await?;
+        let version = path_parameter(parts, state, "version").await?;
+        let found = state.index().version(&name, &version)?;
+        Ok(Self { manifest: found.manifest, pinned: found.pinned })
     }
 }
 
-/// A table's name, from `…/tables/{name}…`.
+/// A parameter of the path, decoded.
+pub(crate) async fn path_parameter(
+    parts: &mut Parts,
+    state: &AppState,
+    name: &'static str,
+) -> Result<String, ApiError> {
+    let broken = |_| ApiError::malformed(None, "the path cannot be read: it is not UTF-8 when decoded");
+    let raw = RawPathParams::from_request_parts(parts, state).await.map_err(broken)?;
+    let value = raw.iter().find(|(known, _)| *known == name).map(|(_, value)| value.to_owned());
+    value.ok_or_else(|| ApiError::internal(format!("the route has no parameter {name}")))
+}
+
+/// A table's name, from `/v1/tables/{name}…`.
 pub(crate) struct TableName(pub String);
 
 impl FromRequestParts<AppState> for TableName {
     type Rejection = ApiError;
 
     async fn from_request_parts(parts: &mut Parts, state: &AppState) -> Result<Self, ApiError> {
-        let Path(name) = Path::from_request_parts(parts, state).await?;
-        Ok(Self(name))
+        path_parameter(parts, state, "name").await.map(Self)
+    }
+}
+
+/// From `/v1/refits/{id}…`.
+pub(crate) struct RefitId(pub String);
+
+impl FromRequestParts<AppState> for RefitId {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &AppState) -> Result<Self, ApiError> {
+        let Path(id) = Path::<String>::from_request_parts(parts, state).await?;
+        Ok(Self(id))
     }
 }

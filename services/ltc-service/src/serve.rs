@@ -1,42 +1,27 @@
 //! An address, connections, and an end.
 
+use std::convert::Infallible;
 use std::io;
 use std::net::SocketAddr;
+use std::sync::Arc;
 use std::time::Duration;
 
-use axum::Router;
+use axum::body::Body;
+use axum::http::Request;
+use hyper::body::{Body as _, Incoming};
 use hyper::server::conn::http1;
+use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::server::graceful::GracefulShutdown;
-use hyper_util::service::TowerToHyperService;
-use ltc_table::Catalogue;
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::watch;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 use tokio::task::JoinSet;
 
+use crate::AppState;
+use crate::gate::Gate;
+use crate::router::gate;
+use crate::settings::Limits;
 use crate::stop::{Stop, on_signals, wait};
-use crate::{AppState, Limits, app};
-
-/// Where and how to serve.
-#[derive(Clone, Debug)]
-pub struct ServeConfig {
-    /// Host and port; port 0 takes a free one.
-    pub listen: String,
-    /// How long requests at hand may take to finish after the service was told to stop.
-    pub drain_time: Duration,
-    /// What one request may cost.
-    pub limits: Limits,
-}
-
-impl Default for ServeConfig {
-    fn default() -> Self {
-        Self {
-            listen: "127.0.0.1:8787".to_owned(),
-            drain_time: Duration::from_secs(10),
-            limits: Limits::default(),
-        }
-    }
-}
 
 /// Why the service did not start.
 #[derive(Debug, thiserror::Error)]
@@ -66,21 +51,19 @@ fn reason(error: &io::Error) -> String {
     }
 }
 
-/// Serves these tables until SIGINT or SIGTERM, then finishes the requests at hand within the drain time. A second
-/// signal ends the waiting.
+/// How often to look for what other processes changed in the store.
+const LOOK: Duration = Duration::from_secs(2);
+
+/// Serves until SIGINT or SIGTERM, then finishes the requests at hand within the drain time. A second signal ends the waiting.
 ///
 /// `on_ready` gets the address, with the real port, once connections are accepted. The process's handlers of the two
 /// signals stay in place afterwards: call this from a program that ends when it returns.
 ///
 /// # Errors
 /// [`ServeError`], before `on_ready` is called.
-pub async fn serve(
-    config: ServeConfig,
-    catalogue: Catalogue,
-    on_ready: impl FnOnce(SocketAddr),
-) -> Result<(), ServeError> {
+pub async fn serve(state: AppState, on_ready: impl FnOnce(SocketAddr)) -> Result<(), ServeError> {
     let stop = on_signals().map_err(ServeError::Signals)?;
-    serve_until(config, catalogue, on_ready, stop).await
+    serve_until(state, on_ready, stop).await
 }
 
 /// As [`serve`], until `stop` says so or its sender is dropped; leaves signals alone.
@@ -88,35 +71,72 @@ pub async fn serve(
 /// # Errors
 /// As [`serve`].
 pub async fn serve_until(
-    config: ServeConfig,
-    catalogue: Catalogue,
+    state: AppState,
     on_ready: impl FnOnce(SocketAddr),
     mut stop: watch::Receiver<Stop>,
 ) -> Result<(), ServeError> {
-    let failed = |cause| ServeError::Listen { address: config.listen.clone(), cause };
-    let listener = TcpListener::bind(&config.listen).await.map_err(failed)?;
+    let listen = &state.settings().listen;
+    let failed = |cause| ServeError::Listen { address: listen.clone(), cause };
+    let listener = TcpListener::bind(listen).await.map_err(failed)?;
     let address = listener.local_addr().map_err(failed)?;
-    let mut connections = Connections::new(&config.limits);
-    let app = app(AppState::new(catalogue, config.limits.clone()));
+    let mut connections = Connections::new(state.limits(), gate(state.clone()));
+    warn_without_tokens(&state).await;
     tracing::info!(%address, "listening");
     on_ready(address);
+    let chores = tokio::spawn(chores(state.clone()));
+    state.refresh_when_published();
+    let workers = state.refits().start();
     loop {
         tokio::select! {
-            stream = accept(&listener) => connections.serve(stream, app.clone()),
+            (stream, peer, permit) = connections.next(&listener) => connections.serve(stream, peer, permit),
             () = wait(&mut stop, Stop::Drain) => break,
         }
     }
     drop(listener);
-    connections.drain(config.drain_time, stop).await;
+    chores.abort();
+    state.stop();
+    let drain_time = Duration::from_secs_f64(state.settings().drain_seconds);
+    // A refit is put back into the queue, and goes on from there at the next start.
+    tokio::join!(connections.drain(drain_time, stop), workers.stop());
     Ok(())
+}
+
+/// Nobody can write until somebody makes a token: the log says so.
+async fn warn_without_tokens(state: &AppState) {
+    match state.tokens().count(&*state.stores().metadata).await {
+        Ok(0) => {
+            tracing::warn!("there is no token, so that nobody can write; make one with: ltc token create");
+        }
+        Ok(count) => tracing::info!(count, "tokens"),
+        Err(error) => tracing::warn!(%error, "tokens cannot be read"),
+    }
+}
+
+/// What has to be done now and then.
+async fn chores(state: AppState) {
+    let mut failing = false;
+    for round in 1_u64.. {
+        tokio::time::sleep(LOOK).await;
+        match state.refresh().await {
+            Ok(()) => failing = false,
+            Err(error) if !failing => {
+                failing = true;
+                tracing::error!(%error, "the store cannot be read; what is in memory is served on");
+            }
+            Err(_) => {}
+        }
+        if round % 30 == 0 {
+            state.rates().forget();
+        }
+    }
 }
 
 /// The next connection. Failures to accept, such as too many open files, pass when connections end: they are logged,
 /// and after a moment it tries again.
-async fn accept(listener: &TcpListener) -> TcpStream {
+async fn accept(listener: &TcpListener) -> (TcpStream, SocketAddr) {
     loop {
         match listener.accept().await {
-            Ok((stream, _)) => return stream,
+            Ok(accepted) => return accepted,
             Err(error) => {
                 tracing::warn!(%error, "cannot accept a connection");
                 tokio::time::sleep(Duration::from_millis(100)).await;
@@ -127,31 +147,49 @@ async fn accept(listener: &TcpListener) -> TcpStream {
 
 /// The open connections.
 struct Connections {
+    gate: Gate,
     protocol: http1::Builder,
     graceful: GracefulShutdown,
     tasks: JoinSet<()>,
+    permits: Arc<Semaphore>,
 }
 
 impl Connections {
     /// Larger request heads are answered with 431 by the protocol.
     const HEAD_BYTES: usize = 64 << 10;
 
-    fn new(limits: &Limits) -> Self {
+    fn new(limits: &Limits, gate: Gate) -> Self {
         let mut protocol = http1::Builder::new();
         protocol
             .timer(TokioTimer::new())
-            .header_read_timeout(limits.header_time)
-            .max_buf_size(Self::HEAD_BYTES);
-        Self { protocol, graceful: GracefulShutdown::new(), tasks: JoinSet::new() }
+            .header_read_timeout(limits.header_time())
+            .max_buf_size(Self::HEAD_BYTES)
+            .pipeline_flush(true);
+        let permits = Arc::new(Semaphore::new(limits.connections));
+        Self { gate, protocol, graceful: GracefulShutdown::new(), tasks: JoinSet::new(), permits }
     }
 
-    fn serve(&mut self, stream: TcpStream, app: Router) {
+    /// The next connection, once there is room for one.
+    async fn next(&self, listener: &TcpListener) -> (TcpStream, SocketAddr, Option<OwnedSemaphorePermit>) {
+        // It is never closed, so that there is always a permit in the end.
+        let permit = Arc::clone(&self.permits).acquire_owned().await.ok();
+        let (stream, peer) = accept(listener).await;
+        (stream, peer, permit)
+    }
+
+    fn serve(&mut self, stream: TcpStream, peer: SocketAddr, permit: Option<OwnedSemaphorePermit>) {
         while self.tasks.try_join_next().is_some() {}
         // Answers are written whole: waiting to fill packets only delays them. Not all systems can, none must.
         let _ = stream.set_nodelay(true);
-        let connection = self.protocol.serve_connection(TokioIo::new(stream), TowerToHyperService::new(app));
+        let gate = self.gate.clone();
+        let service = service_fn(move |request: Request<Incoming>| {
+            let gate = gate.clone();
+            async move { Ok::<_, Infallible>(gate.answer(with_body(request), Some(peer.ip())).await) }
+        });
+        let connection = self.protocol.serve_connection(TokioIo::new(stream), service);
         let connection = self.graceful.watch(connection);
         self.tasks.spawn(async move {
+            let _permit = permit;
             if let Err(error) = connection.await {
                 tracing::debug!(%error, "connection ended");
             }
@@ -174,4 +212,9 @@ impl Connections {
         }
         tasks.shutdown().await;
     }
+}
+
+/// A request as handlers take it. Most have no body, and then need no box for one.
+fn with_body(request: Request<Incoming>) -> Request<Body> {
+    request.map(|body| if body.is_end_stream() { Body::empty() } else { Body::new(body) })
 }

@@ -1,6 +1,7 @@
 //! The forms a table can be fetched in.
 
-use ltc_table::{Channels, Part, Precision, Quantity, TableError, TableVersion, ktx2, npz};
+use ltc_table::drop_in::Language;
+use ltc_table::{Channels, DropIn, Manifest, Part, Precision, Quantity, TableError, TableVersion, ktx2, npz};
 
 use crate::params::{Params, number};
 use crate::{ApiError, json_table};
@@ -14,23 +15,46 @@ pub enum Format {
     Ktx2,
     /// The arrays of the NPZ as nested lists, with name, version, digest and axes.
     Json,
+    /// The first of the two textures that engines ship; see [`ltc_table::drop_in`].
+    DropInDds1,
+    /// The second.
+    DropInDds2,
+    /// Both as C source.
+    DropInC,
+    /// Both as a JavaScript module.
+    DropInJs,
 }
 
 impl Format {
+    /// All of them, by the names that requests give them.
+    pub const ALL: [(&'static str, Self); 7] = [
+        ("npz", Self::Npz),
+        ("ktx2", Self::Ktx2),
+        ("json", Self::Json),
+        ("dropin-dds-1", Self::DropInDds1),
+        ("dropin-dds-2", Self::DropInDds2),
+        ("dropin-c", Self::DropInC),
+        ("dropin-js", Self::DropInJs),
+    ];
+
     fn from_name(name: &str) -> Option<Self> {
-        match name {
-            "npz" => Some(Self::Npz),
-            "ktx2" => Some(Self::Ktx2),
-            "json" => Some(Self::Json),
-            _ => None,
-        }
+        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, format)| *format)
     }
 
-    fn extension(self) -> &'static str {
+    fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, format)| *format == self).map_or("", |(name, _)| name)
+    }
+
+    /// The end of a file's name.
+    fn ending(self) -> &'static str {
         match self {
-            Self::Npz => "npz",
-            Self::Ktx2 => "ktx2",
-            Self::Json => "json",
+            Self::Npz => ".npz",
+            Self::Ktx2 => ".ktx2",
+            Self::Json => ".json",
+            Self::DropInDds1 => "-ltc_1.dds",
+            Self::DropInDds2 => "-ltc_2.dds",
+            Self::DropInC => ".h",
+            Self::DropInJs => ".js",
         }
     }
 
@@ -39,31 +63,42 @@ impl Format {
             Self::Npz => "application/zip",
             Self::Ktx2 => "image/ktx2",
             Self::Json => "application/json",
+            Self::DropInDds1 | Self::DropInDds2 => "image/vnd.ms-dds",
+            Self::DropInC => "text/plain; charset=utf-8",
+            Self::DropInJs => "text/javascript; charset=utf-8",
         }
     }
 
-    /// GPUs do not filter doubles; the others give what was fitted.
-    fn default_precision(self) -> Precision {
+    /// Precisions that the format has, the default first: GPUs do not filter doubles, source text is in singles, the others
+    /// give what was fitted.
+    fn precisions(self) -> &'static [Precision] {
         match self {
-            Self::Npz | Self::Json => Precision::F64,
-            Self::Ktx2 => Precision::F32,
+            Self::Npz | Self::Json => &[Precision::F64, Precision::F32, Precision::F16],
+            Self::Ktx2 | Self::DropInDds1 | Self::DropInDds2 => &[Precision::F32, Precision::F16],
+            Self::DropInC | Self::DropInJs => &[Precision::F32],
         }
+    }
+
+    /// Whether channels can be chosen; the other formats hold what shading reads.
+    fn has_channels(self) -> bool {
+        matches!(self, Self::Npz | Self::Json)
     }
 }
 
-/// Axes that a request can crop. Not φ: every lookup folds it into the whole axis.
-const CROPPED: [Quantity; 3] = [Quantity::Theta, Quantity::Alpha, Quantity::Lambda];
+/// Axes that a request can crop.
+const CROPPED: [Quantity; 4] = [Quantity::Theta, Quantity::Phi, Quantity::Alpha, Quantity::Lambda];
 
 /// One form of a table: the parameters of `data`.
 ///
 /// | parameter | values | default |
 /// |---|---|---|
-/// | `format` | `npz`, `ktx2`, `json` | `npz` |
-/// | `precision` | `f16`, `f32`, `f64`; `ktx2` has no `f64` | `f64`; `ktx2`: `f32` |
-/// | `channels` | some of `m,magnitude,fresnel,cells`; `ktx2` holds the first three, always | all |
-/// | `theta`, `alpha`, `lambda` | `LOW..HIGH`: the nodes around that range alone | the whole axis |
+/// | `format` | `npz`, `ktx2`, `json`, `dropin-dds-1`, `dropin-dds-2`, `dropin-c`, `dropin-js` | `npz` |
+/// | `precision` | `f16`, `f32`, `f64`; only `npz` and `json` have `f64`, source text has `f32` alone | `f64`; else `f32` |
+/// | `channels` | some of `m,magnitude,fresnel,cells`; formats other than `npz` and `json` hold the first three, always | all |
+/// | `theta`, `phi`, `alpha`, `lambda` | `LOW..HIGH`: the nodes around that range alone | the whole axis |
 ///
-/// The default of all is the payload itself, byte for byte what the digest is of.
+/// A lookup folds φ into [0, π/2]; a table cropped in φ answers for folded azimuths within its range, and at the range's ends
+/// for others. The default of all is the payload itself, byte for byte what the digest is of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variant {
     /// The file format.
@@ -76,23 +111,13 @@ pub struct Variant {
     pub part: Part,
 }
 
-/// Names the bytes of a variant of a version.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct VariantKey {
-    table: (String, u32, String),
-    format: Format,
-    precision: Precision,
-    channels: Channels,
-    crop: Vec<(Quantity, [u64; 2])>,
-}
-
 impl Variant {
     /// From the parameters of `data`.
     pub(crate) fn of_data(mut params: Params) -> Result<Self, ApiError> {
         let format = format(&mut params)?;
         let channels = match params.take("channels") {
-            None if format == Format::Ktx2 => Channels::SHADING,
-            None => Channels::ALL,
+            None if format.has_channels() => Channels::ALL,
+            None => Channels::SHADING,
             Some(names) => channels(&names, format)?,
         };
         let precision = precision(&mut params, format)?;
@@ -102,15 +127,15 @@ impl Variant {
                 crop.push((quantity, range(quantity.name(), &text)?));
             }
         }
-        params.finish(&["format", "precision", "channels", "theta", "alpha", "lambda"])?;
+        params.finish(&["format", "precision", "channels", "theta", "phi", "alpha", "lambda"])?;
         Ok(Self { format, precision, channels, part: Part(crop) })
     }
 
     /// From the parameters of `fresnel`.
     pub(crate) fn of_fresnel(mut params: Params) -> Result<Self, ApiError> {
         let format = format(&mut params)?;
-        if format == Format::Ktx2 {
-            let reason = "ktx2 always holds the matrices too: fetch it from data, or take npz or json here";
+        if !format.has_channels() {
+            let reason = "always holds the matrices too: fetch it from data, or take npz or json here";
             return Err(ApiError::invalid("format", reason));
         }
         let precision = precision(&mut params, format)?;
@@ -126,25 +151,22 @@ impl Variant {
             && self.part.is_whole()
     }
 
-    pub(crate) fn key(&self, version: &TableVersion) -> VariantKey {
-        let manifest = version.manifest();
-        VariantKey {
-            table: (manifest.name.clone(), manifest.version, manifest.digest.clone()),
-            format: self.format,
-            precision: self.precision,
-            channels: self.channels,
-            crop: self.part.0.iter().map(|(q, range)| (*q, range.map(f64::to_bits))).collect(),
-        }
+    /// Everything that the bytes depend on, besides the program.
+    pub(crate) fn key(&self, manifest: &Manifest) -> String {
+        let Manifest { name, version, digest, .. } = manifest;
+        let Self { format, precision, channels, part } = self;
+        let crop: Vec<_> = part.0.iter().map(|(q, range)| (q.name(), range.map(f64::to_bits))).collect();
+        let (format, precision) = (format.name(), precision.name());
+        format!("data {name}@{version} {digest} {format} {precision} {channels:?} {crop:?}")
     }
 
     /// A file name that says what is inside: `ggx-isotropic-1.npz`, `ggx-isotropic-1-f16-part.ktx2`.
-    pub(crate) fn file_name(&self, version: &TableVersion) -> String {
-        let manifest = version.manifest();
+    pub(crate) fn file_name(&self, manifest: &Manifest) -> String {
         let mut name = format!("{}-{}", manifest.name, manifest.version);
         if self.precision != Precision::F64 {
             name = format!("{name}-{}", self.precision.name());
         }
-        let whole = if self.format == Format::Ktx2 { Channels::SHADING } else { Channels::ALL };
+        let whole = if self.format.has_channels() { Channels::ALL } else { Channels::SHADING };
         if self.channels == Channels::FRESNEL {
             name += "-fresnel";
         } else if self.channels != whole {
@@ -153,7 +175,7 @@ impl Variant {
         if !self.part.is_whole() {
             name += "-part";
         }
-        format!("{name}.{}", self.format.extension())
+        name + self.format.ending()
     }
 
     /// The bytes.
@@ -166,6 +188,10 @@ impl Variant {
             Format::Npz => npz::write(&table, self.precision, self.channels),
             Format::Ktx2 => ktx2::write(&table, self.precision, &self.part.manifest(version, &table)?),
             Format::Json => json_table::write(version, &table, self.precision, self.channels),
+            Format::DropInDds1 => DropIn::of(&table)?.dds(self.precision).map(|[first, _]| first),
+            Format::DropInDds2 => DropIn::of(&table)?.dds(self.precision).map(|[_, second]| second),
+            Format::DropInC => DropIn::of(&table)?.text(Language::C).map(String::into_bytes),
+            Format::DropInJs => DropIn::of(&table)?.text(Language::JavaScript).map(String::into_bytes),
         };
         written.map_err(|source| match source {
             TableError::PrecisionLoss { .. } | TableError::BadEntry { .. } => ApiError::Unwritable { source },
@@ -176,16 +202,21 @@ impl Variant {
 
 fn format(params: &mut Params) -> Result<Format, ApiError> {
     let Some(name) = params.take("format") else { return Ok(Format::Npz) };
-    Format::from_name(&name)
-        .ok_or_else(|| ApiError::invalid("format", format!("must be npz, ktx2 or json, not {name:?}")))
+    Format::from_name(&name).ok_or_else(|| {
+        let known: Vec<&str> = Format::ALL.iter().map(|(name, _)| *name).collect();
+        ApiError::invalid("format", format!("must be one of {}, not {name:?}", known.join(", ")))
+    })
 }
 
 fn precision(params: &mut Params, format: Format) -> Result<Precision, ApiError> {
-    let Some(name) = params.take("precision") else { return Ok(format.default_precision()) };
+    let precisions = format.precisions();
+    let Some(name) = params.take("precision") else { return Ok(precisions[0]) };
     let precision = Precision::from_name(&name)
         .ok_or_else(|| ApiError::invalid("precision", format!("must be f16, f32 or f64, not {name:?}")))?;
-    if format == Format::Ktx2 && precision == Precision::F64 {
-        return Err(ApiError::invalid("precision", "must be f16 or f32 for ktx2: no GPU filters f64"));
+    if !precisions.contains(&precision) {
+        let known: Vec<&str> = precisions.iter().map(|p| p.name()).collect();
+        let reason = format!("must be {} for {}, not {name}", known.join(" or "), format.name());
+        return Err(ApiError::invalid("precision", reason));
     }
     Ok(precision)
 }
@@ -195,8 +226,9 @@ fn channels(names: &str, format: Format) -> Result<Channels, ApiError> {
         let reason = format!("must be some of m,magnitude,fresnel,cells, not {names:?}");
         ApiError::invalid("channels", reason)
     })?;
-    if format == Format::Ktx2 && chosen != Channels::SHADING {
-        return Err(ApiError::invalid("channels", "must be m,magnitude,fresnel for ktx2"));
+    if !format.has_channels() && chosen != Channels::SHADING {
+        let reason = format!("must be m,magnitude,fresnel for {}", format.name());
+        return Err(ApiError::invalid("channels", reason));
     }
     Ok(chosen)
 }

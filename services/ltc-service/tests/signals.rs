@@ -2,18 +2,21 @@
 #![cfg(unix)]
 
 use std::process::Command;
+use std::sync::Arc;
 use std::time::Duration;
 
-use ltc_service::{ServeConfig, serve};
-use ltc_table::Catalogue;
+use ltc_service::{AppState, Settings, Stores, serve};
+use ltc_store::MemoryStore;
 
 #[tokio::test]
 async fn sigterm_and_sigint_stop_the_service() {
     for signal in ["-TERM", "-INT"] {
         let (ready, address) = tokio::sync::oneshot::channel();
-        let config = ServeConfig { listen: "127.0.0.1:0".to_owned(), ..ServeConfig::default() };
+        let settings = Settings { listen: "127.0.0.1:0".to_owned(), ..Settings::default() };
+        let stores = Stores::of(Arc::new(MemoryStore::default()));
+        let state = AppState::new(stores, settings).await.unwrap();
         let on_ready = move |address| ready.send(address).unwrap();
-        let server = tokio::spawn(serve(config, Catalogue::default(), on_ready));
+        let server = tokio::spawn(serve(state, on_ready));
         let address = address.await.unwrap();
         assert_ne!(address.port(), 0);
         tokio::net::TcpStream::connect(address).await.unwrap();

@@ -144,6 +144,9 @@ pub enum Outcome {
     Released,
 }
 
+/// Attempts without progress after which a job is given up: it kills whoever takes it.
+pub const MAX_BARREN: u32 = 100;
+
 /// A durable queue of jobs. Every method is one transaction; what it acknowledged survives a kill.
 ///
 /// Delivery is at least once: a worker that shows no life for the lease is taken for dead and its job is claimed anew. Work is
@@ -157,7 +160,16 @@ pub trait Jobs: Send + Sync {
     /// request.
     async fn enqueue(&self, job: NewJob, limit: u64) -> Result<(Job, bool), StoreError>;
 
-    /// The next job for a worker: the first queued one, or a running one whose lease is over.
+    /// Writes down a job whose result is there already: it is born succeeded, with `note` in its log. A job of the same
+    /// idempotency key is found as by [`Jobs::enqueue`], whatever its state.
+    ///
+    /// # Errors
+    /// [`StoreError::Conflict`] when the key was used with another request.
+    async fn enqueue_done(&self, job: NewJob, version: u32, note: &str) -> Result<(Job, bool), StoreError>;
+
+    /// The next job for a worker: one that it has already (no two running workers have the same name, so it was killed over
+    /// it), a running one whose lease is over, or the first queued one. A job that [`MAX_BARREN`] attempts in a row were
+    /// lost over, without any progress, fails instead.
     ///
     /// # Errors
     /// [`StoreError::Backend`].
@@ -199,9 +211,75 @@ pub trait Jobs: Send + Sync {
     /// [`StoreError::NotFound`] without such a job.
     async fn events(&self, id: &str, after: u64) -> Result<Vec<Event>, StoreError>;
 
+    /// A number that grows with every change to a job that this process knows of: whoever waits for one looks again when
+    /// it moves. A store that processes share may learn of others' changes late or never, so look now and then all the same.
+    fn watch(&self) -> tokio::sync::watch::Receiver<u64>;
+
     /// Jobs that wait, and jobs that run.
     ///
     /// # Errors
     /// [`StoreError::Backend`].
     async fn depth(&self) -> Result<(u64, u64), StoreError>;
+}
+
+/// What an event of the kind [`EventKind::State`] says.
+pub(crate) fn state_event(job: &Job) -> serde_json::Value {
+    serde_json::json!({
+        "state": job.state,
+        "version": job.version,
+        "error": job.error,
+        "attempt": job.attempts,
+        "cancel_requested": job.cancel_requested,
+    })
+}
+
+/// What an event of the kind [`EventKind::Progress`] says.
+pub(crate) fn progress_event(shard: &ShardReport) -> serde_json::Value {
+    let ShardReport { progress, seconds_left, tv, .. } = shard;
+    serde_json::json!({ "progress": progress, "seconds_left": seconds_left, "tv": tv })
+}
+
+/// A new id: the number of the job in the order of creation, and 64 random bits, so that ids cannot be guessed.
+///
+/// # Errors
+/// [`StoreError::Backend`] where the system has no random numbers.
+pub(crate) fn new_id(number: u64) -> Result<String, StoreError> {
+    let random = getrandom::u64().map_err(|e| StoreError::Backend(e.to_string()))?;
+    Ok(format!("{number:016x}{random:016x}"))
+}
+
+/// # Errors
+/// [`StoreError::Conflict`] where the same idempotency key came with another request.
+pub(crate) fn check_same(there: &NewJob, asked: &NewJob) -> Result<(), StoreError> {
+    if there == asked {
+        return Ok(());
+    }
+    Err(StoreError::Conflict { reason: "the idempotency key was used with another request".to_owned() })
+}
+
+/// That a claim is one no more.
+pub(crate) fn lost(id: &str) -> StoreError {
+    StoreError::Conflict { reason: format!("the job {id} is no longer this worker's") }
+}
+
+/// That there is no such job.
+pub(crate) fn no_job(id: &str) -> StoreError {
+    StoreError::NotFound { what: "refit", name: id.chars().take(64).collect() }
+}
+
+/// The state and the version or error that an outcome leads to, and its line for the log.
+pub(crate) fn ended(outcome: Outcome) -> (JobState, Option<u32>, Option<String>, Option<String>) {
+    match outcome {
+        Outcome::Succeeded { version, note } => (JobState::Succeeded, Some(version), None, Some(note)),
+        Outcome::Failed { error } => (JobState::Failed, None, Some(error), None),
+        Outcome::Cancelled => (JobState::Cancelled, None, None, None),
+        Outcome::Released => (JobState::Queued, None, None, None),
+    }
+}
+
+/// Why a job that only ever kills its workers is given up.
+pub(crate) fn barren() -> String {
+    format!(
+        "given up: {MAX_BARREN} attempts in a row ended without progress; the log of the service may say why"
+    )
 }

@@ -6,14 +6,28 @@
 //! interfaces: nothing here hands out paths, connections or locks.
 
 mod blobs;
+mod clock;
+#[cfg(feature = "testing")]
+pub mod conformance;
+mod embedded;
 mod error;
 mod jobs;
+mod key;
+#[cfg(feature = "testing")]
+mod memory;
 mod metadata;
+mod secret;
+mod seed;
 
 pub use blobs::{BlobKind, Blobs};
+pub use embedded::{Contents, EmbeddedStore, back_up, restore};
 pub use error::StoreError;
-pub use jobs::{Claim, Event, EventKind, Job, JobState, Jobs, NewJob, Outcome, ShardReport};
+pub use jobs::{Claim, Event, EventKind, Job, JobState, Jobs, MAX_BARREN, NewJob, Outcome, ShardReport};
+#[cfg(feature = "testing")]
+pub use memory::MemoryStore;
 pub use metadata::{
     Alias, Benchmark, BenchmarkFilter, Metadata, NewVersion, Scope, StoredVersion, Token, TokenHash,
     VersionState,
 };
+pub use secret::Secret;
+pub use seed::{SEEDED_ALIASES, seed};

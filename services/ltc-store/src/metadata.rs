@@ -135,15 +135,24 @@ pub struct BenchmarkFilter {
 #[async_trait]
 pub trait Metadata: Send + Sync {
     /// Keeps a version and gives it its number. A version of the same table and digest is returned as it is, whatever its
-    /// manifest: the second of the pair says whether it is new. `alias` moves in the same transaction, to the new version.
+    /// manifest: the second of the pair says whether it is new. `alias` (with the revision that it must have, or `None` for any)
+    /// moves to it in the same transaction; one of any revision that points there already stays as it is.
     ///
     /// # Errors
-    /// [`StoreError::Conflict`] where the alias is not at the revision given.
+    /// [`StoreError::Conflict`] where the alias is not at the revision given, or the version is quarantined: nothing is kept.
     async fn add_version(
         &self,
         version: NewVersion,
         alias: Option<(&str, Option<u64>)>,
     ) -> Result<(StoredVersion, bool), StoreError>;
+
+    /// Keeps a version that comes with the program, under the number of its manifest where that is free. It points each of
+    /// these aliases at the version unless somebody moved the alias by other means or it points at a later one. The same
+    /// again changes nothing; the second of the pair says whether the version is new.
+    ///
+    /// # Errors
+    /// [`StoreError::Unwritable`], [`StoreError::Backend`].
+    async fn seed(&self, version: NewVersion, aliases: &[&str]) -> Result<(StoredVersion, bool), StoreError>;
 
     /// All versions of all tables, by name and number.
     ///
@@ -162,6 +171,12 @@ pub trait Metadata: Send + Sync {
     /// # Errors
     /// [`StoreError::Backend`].
     async fn aliases(&self) -> Result<Vec<Alias>, StoreError>;
+
+    /// A version.
+    ///
+    /// # Errors
+    /// [`StoreError::NotFound`].
+    async fn version(&self, table: &str, number: u32) -> Result<StoredVersion, StoreError>;
 
     /// Points an alias at a published version: `expected` is the revision it must have now (0: there is none yet), or
     /// `None` for any.
@@ -197,7 +212,7 @@ pub trait Metadata: Send + Sync {
     /// Keeps a benchmark run; gives its id.
     ///
     /// # Errors
-    /// [`StoreError::Backend`].
+    /// [`StoreError::Conflict`] where `at` is no RFC 3339 time in UTC; [`StoreError::Backend`].
     async fn add_benchmark(&self, name: &str, at: &str, run: serde_json::Value) -> Result<u64, StoreError>;
 
     /// Benchmark runs, oldest first.
@@ -211,4 +226,26 @@ pub trait Metadata: Send + Sync {
     /// # Errors
     /// Why it does not.
     async fn ping(&self) -> Result<(), StoreError>;
+}
+
+/// # Errors
+/// [`StoreError::Conflict`] for a version that no alias may point at.
+pub(crate) fn check_published(version: &StoredVersion) -> Result<(), StoreError> {
+    match version.state {
+        VersionState::Published => Ok(()),
+        VersionState::Quarantined => Err(StoreError::Conflict {
+            reason: format!("version {} of {} is quarantined", version.number, version.table),
+        }),
+    }
+}
+
+/// # Errors
+/// [`StoreError::Conflict`] where an alias is not at the revision that it has to be at.
+pub(crate) fn check_revision(alias: &str, found: u64, expected: Option<u64>) -> Result<(), StoreError> {
+    match expected {
+        Some(expected) if expected != found => Err(StoreError::Conflict {
+            reason: format!("the alias \"{alias}\" is at revision {found}, not {expected}"),
+        }),
+        _ => Ok(()),
+    }
 }

@@ -1,5 +1,6 @@
 //! One file for each verb.
 
+pub mod backup;
 pub mod bench;
 pub mod diff;
 pub mod export;
@@ -9,4 +10,5 @@ pub mod lookup;
 pub mod render;
 pub mod serve;
 pub mod tables;
+pub mod token;
 pub mod verify;

@@ -2,7 +2,7 @@
 
 use crate::support::ltc;
 
-const VERBS: [&str; 11] = [
+const VERBS: [&str; 14] = [
     "serve",
     "fit",
     "tables",
@@ -14,6 +14,9 @@ const VERBS: [&str; 11] = [
     "export",
     "render",
     "bench",
+    "token",
+    "backup",
+    "restore",
 ];
 
 #[test]

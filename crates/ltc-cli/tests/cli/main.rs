@@ -12,5 +12,6 @@ mod render;
 mod resume;
 #[cfg(unix)]
 mod serve;
+mod store;
 mod support;
 mod tables;

@@ -2,6 +2,7 @@
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
+use std::path::Path;
 use std::process::{Child, ChildStdout, Command};
 
 use crate::support::{command, ltc};
@@ -15,7 +16,11 @@ struct Served {
 
 impl Served {
     fn start() -> Self {
-        let mut child = command(&["serve", "--listen", "127.0.0.1:0", "--log", "warn"]).spawn().unwrap();
+        Self::start_with(&["serve", "--listen", "127.0.0.1:0", "--log", "warn"])
+    }
+
+    fn start_with(args: &[&str]) -> Self {
+        let mut child = command(args).spawn().unwrap();
         let mut stdout = BufReader::new(child.stdout.take().unwrap());
         let mut line = String::new();
         stdout.read_line(&mut line).unwrap();
@@ -25,8 +30,13 @@ impl Served {
 
     /// Status and body.
     fn get(&self, path: &str) -> (u16, String) {
+        self.exchange(&format!("GET {path} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", self.address))
+    }
+
+    /// Status and body of a request as it is written.
+    fn exchange(&self, request: &str) -> (u16, String) {
         let mut stream = TcpStream::connect(&self.address).unwrap();
-        write!(stream, "GET {path} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", self.address).unwrap();
+        stream.write_all(request.as_bytes()).unwrap();
         let mut answer = String::new();
         stream.read_to_string(&mut answer).unwrap();
         let (head, body) = answer.split_once("\r\n\r\n").unwrap();
@@ -79,6 +89,87 @@ fn a_port_in_use_and_a_wrong_address_are_told() {
     let address = taken.local_addr().unwrap().to_string();
     ltc(&["serve", "--listen", &address]).refused(&[&address, "in use"]);
     ltc(&["serve", "--listen", "nonsense"]).refused(&["nonsense"]);
-    ltc(&["serve", "--listen", "127.0.0.1:0", "--log", "a=b=c"]).refused(&["--log a=b=c"]);
+    ltc(&["serve", "--listen", "127.0.0.1:0", "--log", "a=b=c"]).refused(&["log a=b=c"]);
     ltc(&["serve", "--tables", "no/such/folder"]).refused(&["no/such/folder"]);
+}
+
+#[test]
+fn settings_are_checked_and_printed_without_serving() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("ltc.toml");
+    std::fs::write(&file, "log = \"warn\"\ndrain_seconds = 3\n[limits]\nbody_bytes = 10\n").unwrap();
+    let file = file.to_str().unwrap();
+    let args = ["serve", "--check", "--config", file, "--listen", "127.0.0.1:3", "--set", "refits.threads=2"];
+    let mut child = command(&args);
+    child.env("LTC_LOG", "error").env("LTC_LISTEN", "127.0.0.1:2");
+    let printed = String::from_utf8(child.output().unwrap().stdout).unwrap();
+    for line in [
+        "listen = \"127.0.0.1:3\"",
+        "log = \"error\"",
+        "drain_seconds = 3.0",
+        "body_bytes = 10",
+        "threads = 2",
+    ] {
+        assert!(printed.lines().any(|found| found == line), "{line}\n{printed}");
+    }
+    // What is printed is a file that gives the same.
+    let copy = folder.path().join("copy.toml");
+    std::fs::write(&copy, &printed).unwrap();
+    assert_eq!(ltc(&["serve", "--check", "--config", copy.to_str().unwrap()]).good().out, printed);
+    for (args, said) in [
+        (&["--set", "limits.body=1"][..], "limits.body"),
+        (&["--read", "maybe"], "maybe"),
+        (&["--config", "no/such/file.toml"], "no/such/file.toml"),
+        (&["--listen", "nowhere"], "nowhere"),
+    ] {
+        ltc(&[&["serve", "--check"], args].concat()).refused(&[said]);
+    }
+}
+
+/// Everything that a service of this folder wrote to its log.
+fn log_of(folder: &Path, format: &str, ask: impl FnOnce(&Served)) -> String {
+    let data = folder.to_str().unwrap();
+    let args = ["serve", "--listen", "127.0.0.1:0", "--data", data, "--log", "trace", "--log-format", format];
+    let mut served = Served::start_with(&args);
+    let mut stderr = served.child.stderr.take().unwrap();
+    let reader = std::thread::spawn(move || {
+        let mut text = String::new();
+        stderr.read_to_string(&mut text).map(|_| text)
+    });
+    ask(&served);
+    served.signal("-TERM");
+    served.child.wait().unwrap();
+    reader.join().unwrap().unwrap()
+}
+
+#[test]
+fn logs_tell_what_happened_and_no_secret() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().to_str().unwrap();
+    let made = ltc(&["token", "create", "--data", data, "--scope", "benchmark", "--json"]).json();
+    let token = made["token"].as_str().unwrap().to_owned();
+    for format in ["text", "json"] {
+        let log = log_of(folder.path(), format, |served| {
+            let body = "{\"name\": \"a\", \"run\": {}}";
+            let head = format!(
+                "POST /v1/benchmarks HTTP/1.1\r\nHost: a\r\nConnection: close\r\nAuthorization: Bearer {token}\r\n\
+                 X-Request-Id: build-42\r\nContent-Type: application/json\r\nContent-Length: {}\r\n\r\n{body}",
+                body.len()
+            );
+            assert_eq!(served.exchange(&head).0, 201);
+            assert_eq!(served.exchange(&head.replace("ltc_", "ltc_0")).0, 401);
+        });
+        let secret = token.rsplit('_').next().unwrap();
+        assert!(!log.contains(secret), "a secret is in the log");
+        assert!(log.contains("build-42") && log.contains("/v1/benchmarks"), "{log}");
+        if format == "json" {
+            for line in log.lines() {
+                let line: serde_json::Value =
+                    serde_json::from_str(line).unwrap_or_else(|e| panic!("{e}: {line}"));
+                assert!(line["level"].is_string() && line["timestamp"].is_string());
+            }
+        }
+    }
+    let log = log_of(&folder.path().join("other"), "text", |_| {});
+    assert!(log.contains("there is no token, so that nobody can write"), "{log}");
 }

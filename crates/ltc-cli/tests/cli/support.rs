@@ -16,7 +16,10 @@ pub struct Run {
 /// `ltc` with these arguments, away from the user's own settings.
 pub fn command(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_ltc"));
-    for variable in ["LTC_TABLES", "LTC_LOG", "RUST_LOG", "RUST_BACKTRACE"] {
+    for variable in ["RUST_LOG", "RUST_BACKTRACE"] {
+        command.env_remove(variable);
+    }
+    for (variable, _) in std::env::vars_os().filter(|(name, _)| name.to_string_lossy().starts_with("LTC_")) {
         command.env_remove(variable);
     }
     command.args(args).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());

@@ -41,10 +41,17 @@ async fn respond(
 ) -> Result<Response, ApiError> {
     // A browser shows JSON; it can only store the others.
     let disposition = if variant.format == Format::Json { "inline" } else { "attachment" };
-    let disposition = format!("{disposition}; filename=\"{}\"", variant.file_name(&selected.version));
+    let disposition = format!("{disposition}; filename=\"{}\"", variant.file_name(&selected.manifest));
     let content_type = variant.format.content_type();
-    let content = state.encoded(&selected.version, variant).await?;
-    let data = Representation::new(content, content_type, selected.caching())
-        .with(header::CONTENT_DISPOSITION, &disposition);
-    Ok(selected.named(data.respond(request)?))
+    let key = variant.key(&selected.manifest);
+    let content = state.encoded(&selected.manifest, variant).await?;
+    let gzip = if request.wants_gzip() { state.gzipped(&key, &content).await? } else { None };
+    let mut data = Representation::new(content, content_type, selected.caching())
+        .with_gzip(gzip)
+        .with(header::CONTENT_DISPOSITION, &disposition)
+        .kept();
+    for (name, value) in selected.names() {
+        data = data.with(name, &value);
+    }
+    data.respond(request)
 }

@@ -1,5 +1,7 @@
 //! Whether the service lives, and whether it can do its work.
 
+use std::time::Duration;
+
 use axum::Json;
 use axum::extract::State;
 use axum::http::{HeaderName, header};
@@ -26,12 +28,28 @@ pub(crate) struct Ready {
     tables: usize,
 }
 
-/// 200 when there is a table to serve. Tables are checked against their digests before they enter the catalogue.
+/// How long the store may take to say that it is there.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// 200 when the store answers, there is a table to serve, and the service is not about to stop.
 pub(crate) async fn ready(
     State(state): State<AppState>,
 ) -> Result<([(HeaderName, &'static str); 1], Json<Ready>), ApiError> {
-    match state.catalogue().names().count() {
-        0 => Err(ApiError::NotReady),
+    let not = |reason: &str| ApiError::NotReady { reason: reason.to_owned() };
+    if *state.stopping().borrow() {
+        return Err(not("the service is about to stop"));
+    }
+    let ping = tokio::time::timeout(PATIENCE, state.stores().metadata.ping());
+    match ping.await {
+        Ok(Ok(())) => {}
+        Ok(Err(error)) => {
+            tracing::warn!(%error, "the store does not answer");
+            return Err(not("the store does not answer"));
+        }
+        Err(_) => return Err(not("the store does not answer in time")),
+    }
+    match state.index().names().count() {
+        0 => Err(not("there is no table to serve")),
         tables => Ok((NO_STORE, Json(Ready { status: "ready", tables }))),
     }
 }

@@ -11,7 +11,8 @@ use crate::representation::{Caching, Representation, Tagged};
 use crate::{ApiError, AppState};
 
 const PAGE: &str = include_str!("index.html");
-const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
+pub(super) const POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 
 /// `GET /`
 pub(crate) async fn page(
@@ -27,9 +28,9 @@ pub(crate) async fn page(
 /// One row for each version of each table.
 fn rows(state: &AppState) -> Result<String, ApiError> {
     let mut rows = String::new();
-    for name in state.catalogue().names() {
-        for version in state.catalogue().versions(name)? {
-            let manifest = version.manifest();
+    let index = state.index();
+    for name in index.names() {
+        for manifest in index.table(name)?.versions() {
             let [name, brdf, digest] = [name, &manifest.brdf.name, &manifest.digest].map(escaped);
             let at = format!("v1/tables/{name}/versions/{}", manifest.version);
             // Writing to a string cannot fail.
@@ -49,7 +50,7 @@ fn rows(state: &AppState) -> Result<String, ApiError> {
     Ok(rows)
 }
 
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

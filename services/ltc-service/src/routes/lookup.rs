@@ -1,7 +1,5 @@
 //! What a table says about a view direction and a roughness.
 
-use std::sync::Arc;
-
 use axum::extract::{RawQuery, State};
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
@@ -12,12 +10,13 @@ use serde_json::value::RawValue;
 use crate::params::Params;
 use crate::preconditions::Preconditions;
 use crate::representation::{Caching, Representation};
-use crate::request_body::JsonBytes;
+use crate::request_body::{Body, may_be_json};
 use crate::selected::Selected;
-use crate::{ApiError, AppState};
+use crate::{ApiError, AppState, binary_lookup};
 
 /// `GET …/lookup`
 pub(crate) async fn one(
+    State(state): State<AppState>,
     selected: Selected,
     RawQuery(query): RawQuery,
     request: Preconditions,
@@ -30,22 +29,32 @@ pub(crate) async fn one(
         alpha_y: params.required_number("alpha_y")?,
     };
     params.finish(&["theta", "phi", "alpha_x", "alpha_y"])?;
-    let lookup = selected.version.table().lookup(&query)?;
+    let lookup = selected.table(&state).await?.table().lookup(&query)?;
     // Never immutable: the bytes of a table are for ever, the way to interpolate in them may be corrected.
     Ok(selected.named(Representation::json(&lookup, Caching::Short)?.respond(&request)?))
 }
 
 /// `POST …/lookup`: an array of queries in, an array of the same length and order out. An item that is no valid query
-/// gives `{"error": "…"}` in its place, and the others their answers.
+/// gives `{"error": "…"}` in its place, and the others their answers. Or the same in numbers: see [`binary_lookup`].
 pub(crate) async fn batch(
     State(state): State<AppState>,
     selected: Selected,
-    JsonBytes(body): JsonBytes,
+    Body { bytes, media_type }: Body,
 ) -> Result<Response, ApiError> {
     let limit = state.limits().batch_queries;
-    let table = Arc::clone(&selected.version);
-    let answers = state.compute().run(move || answer_all(&table, &body, limit)).await??;
-    let headers = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
+    let binary = media_type.as_deref().and_then(binary_lookup::Form::of);
+    if binary.is_none() && !may_be_json(media_type.as_deref()) {
+        return Err(ApiError::WrongMediaType { expected: binary_lookup::EXPECTED });
+    }
+    let table = selected.table(&state).await?;
+    let (answers, content_type) = match binary {
+        Some(form) => {
+            let work = move || binary_lookup::answer_all(&table, &bytes, form, limit);
+            (state.compute().run(work).await??, form.answers())
+        }
+        None => (state.compute().run(move || answer_all(&table, &bytes, limit)).await??, "application/json"),
+    };
+    let headers = [(header::CONTENT_TYPE, content_type), (header::CACHE_CONTROL, "no-store")];
     Ok(selected.named((headers, answers).into_response()))
 }
 

@@ -1,10 +1,13 @@
 //! What there is: lists and manifests.
 
+use std::collections::BTreeMap;
+
 use axum::extract::State;
 use axum::response::Response;
 use ltc_table::Manifest;
 use serde::Serialize;
 
+use crate::index::{Entry, Index};
 use crate::preconditions::Preconditions;
 use crate::representation::{Caching, Representation, Tagged};
 use crate::selected::{Selected, TableName};
@@ -22,6 +25,8 @@ struct Summary<'a> {
     /// Number of the latest version.
     latest: u32,
     versions: Vec<u32>,
+    /// Numbers by alias.
+    aliases: BTreeMap<&'a str, u32>,
     /// Of the latest version.
     digest: &'a str,
     lobes: u32,
@@ -34,15 +39,26 @@ pub(crate) async fn list(
     State(state): State<AppState>,
     request: Preconditions,
 ) -> Result<Response, ApiError> {
+    let index = state.index();
     let mut tables = Vec::new();
-    for name in state.catalogue().names() {
-        let (latest, versions) = latest_and_versions(&state, name)?;
-        let Manifest { version, digest, lobes, brdf, licence, .. } = latest;
-        let versions = versions.iter().map(|v| v.version).collect();
+    for name in index.names() {
+        let entry = index.table(name)?;
+        let Some(latest) = entry.latest() else { continue };
+        let Manifest { version, digest, lobes, brdf, licence, .. } = &**latest;
+        let (versions, aliases) = (entry.numbers(), numbers_by_alias(entry));
         let brdf = &brdf.name;
-        tables.push(Summary { name, latest: *version, versions, digest, lobes: *lobes, brdf, licence });
+        tables.push(Summary {
+            name,
+            latest: *version,
+            versions,
+            aliases,
+            digest,
+            lobes: *lobes,
+            brdf,
+            licence,
+        });
     }
-    Representation::json(&List { tables }, Caching::Short)?.respond(&request)
+    Representation::json(&List { tables }, Caching::Short)?.kept().respond(&request)
 }
 
 /// The latest version's manifest, and which versions there are.
@@ -50,6 +66,7 @@ pub(crate) async fn list(
 struct Latest<'a> {
     latest: u32,
     versions: Vec<u32>,
+    aliases: BTreeMap<&'a str, u32>,
     #[serde(flatten)]
     manifest: &'a Manifest,
 }
@@ -60,10 +77,15 @@ pub(crate) async fn latest(
     TableName(name): TableName,
     request: Preconditions,
 ) -> Result<Response, ApiError> {
-    let (latest, versions) = latest_and_versions(&state, &name)?;
-    let versions = versions.iter().map(|v| v.version).collect();
-    let document = Latest { latest: latest.version, versions, manifest: latest };
-    Representation::json(&document, Caching::Short)?.respond(&request)
+    let index = state.index();
+    let (entry, latest) = table_and_latest(&index, &name)?;
+    let document = Latest {
+        latest: latest.version,
+        versions: entry.numbers(),
+        aliases: numbers_by_alias(entry),
+        manifest: latest,
+    };
+    Representation::json(&document, Caching::Short)?.kept().respond(&request)
 }
 
 #[derive(Serialize)]
@@ -89,28 +111,40 @@ pub(crate) async fn versions(
     TableName(name): TableName,
     request: Preconditions,
 ) -> Result<Response, ApiError> {
-    let (latest, versions) = latest_and_versions(&state, &name)?;
-    let versions = versions.iter().map(|v| {
-        let Manifest { version, digest, created, payload_bytes, errors, .. } = v;
+    let index = state.index();
+    let (entry, latest) = table_and_latest(&index, &name)?;
+    let versions = entry.versions().map(|v| {
+        let Manifest { version, digest, created, payload_bytes, errors, .. } = &**v;
         let tv_mean = errors.standard_draw.tv_mean;
         VersionSummary { version: *version, digest, created, payload_bytes: *payload_bytes, tv_mean }
     });
     let document = Versions { name: &name, latest: latest.version, versions: versions.collect() };
-    Representation::json(&document, Caching::Short)?.respond(&request)
+    Representation::json(&document, Caching::Short)?.kept().respond(&request)
 }
 
 /// `GET /v1/tables/{name}/versions/{version}`: the bytes of `manifest.json`.
 pub(crate) async fn manifest(selected: Selected, request: Preconditions) -> Result<Response, ApiError> {
-    let content = Tagged::new(selected.version.manifest_json()?.into_bytes());
-    let manifest = Representation::new(content, "application/json", selected.caching());
-    Ok(selected.named(manifest.respond(&request)?))
+    let content = Tagged::new(manifest_json(&selected.manifest)?.into_bytes());
+    let mut manifest = Representation::new(content, "application/json", selected.caching()).kept();
+    for (name, value) in selected.names() {
+        manifest = manifest.with(name, &value);
+    }
+    manifest.respond(&request)
 }
 
-/// The manifests of a table's latest version and of all, oldest first.
-fn latest_and_versions<'a>(
-    state: &'a AppState,
-    name: &str,
-) -> Result<(&'a Manifest, Vec<&'a Manifest>), ApiError> {
-    let latest = state.catalogue().version(name, "latest")?.manifest();
-    Ok((latest, state.catalogue().versions(name)?.map(|version| version.manifest()).collect()))
+/// As [`ltc_table::TableVersion::manifest_json`] writes it.
+pub(crate) fn manifest_json(manifest: &Manifest) -> Result<String, ApiError> {
+    Ok(serde_json::to_string_pretty(manifest).map_err(ApiError::internal)? + "\n")
+}
+
+fn numbers_by_alias(entry: &Entry) -> BTreeMap<&str, u32> {
+    entry.aliases().values().map(|alias| (alias.name.as_str(), alias.number)).collect()
+}
+
+/// A table, and the manifest of its latest version.
+fn table_and_latest<'a>(index: &'a Index, name: &str) -> Result<(&'a Entry, &'a Manifest), ApiError> {
+    let entry = index.table(name)?;
+    // A table is in the index because it has a version.
+    let latest = entry.latest().ok_or_else(|| ApiError::internal("a table without versions"))?;
+    Ok((entry, latest))
 }

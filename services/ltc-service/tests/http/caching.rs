@@ -24,7 +24,7 @@ fn paths() -> Vec<String> {
 
 #[tokio::test]
 async fn the_tag_is_the_digest_of_the_body() {
-    let app = service();
+    let app = service().await;
     for path in paths() {
         let answer = get(&app, &path).await;
         assert_eq!(answer.status, StatusCode::OK, "{path}");
@@ -35,7 +35,7 @@ async fn the_tag_is_the_digest_of_the_body() {
 
 #[tokio::test]
 async fn tags_of_different_things_differ() {
-    let app = service();
+    let app = service().await;
     let mut tags = Vec::new();
     let forms = [
         "",
@@ -61,7 +61,7 @@ async fn tags_of_different_things_differ() {
 
 #[tokio::test]
 async fn a_known_tag_gives_304() {
-    let app = service();
+    let app = service().await;
     for path in paths() {
         let full = get(&app, &path).await;
         let tag = full.header("etag");
@@ -94,7 +94,7 @@ async fn a_known_tag_gives_304() {
 
 #[tokio::test]
 async fn another_versions_tag_is_not_this_ones() {
-    let app = service();
+    let app = service().await;
     let tag = get(&app, &at(ISO, "1", "/data")).await.header("etag").to_owned();
     let answer = get_with(&app, &at(ISO, "latest", "/data"), &[("if-none-match", &tag)]).await;
     assert_eq!(answer.status, StatusCode::OK, "latest has moved on");
@@ -104,7 +104,7 @@ async fn another_versions_tag_is_not_this_ones() {
 
 #[tokio::test]
 async fn if_match_must_name_the_current_tag() {
-    let app = service();
+    let app = service().await;
     let path = at(ISO, "1", "/data");
     let tag = get(&app, &path).await.header("etag").to_owned();
     for (value, status) in [
@@ -121,7 +121,7 @@ async fn if_match_must_name_the_current_tag() {
 
 #[tokio::test]
 async fn what_cannot_change_is_immutable_and_the_rest_is_not() {
-    let app = service();
+    let app = service().await;
     let digest = digest_of(ISO, "10");
     for rest in ["", "/data", "/data?format=ktx2", "/fresnel"] {
         for version in ["10", &digest] {
@@ -142,7 +142,7 @@ async fn what_cannot_change_is_immutable_and_the_rest_is_not() {
 
 #[tokio::test]
 async fn head_is_get_without_the_body() {
-    let app = service();
+    let app = service().await;
     let mut all = paths();
     all.extend(["/healthz".to_owned(), "/readyz".into(), "/nowhere".into(), at(ISO, "7", "/data")]);
     for path in all {

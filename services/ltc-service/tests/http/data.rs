@@ -2,7 +2,7 @@
 
 use axum::http::{Method, StatusCode};
 use ltc_core::Matrix;
-use ltc_service::Limits;
+use ltc_service::{Limits, Settings};
 use ltc_table::{Channels, Precision, Quantity, Table, digest::digest, npz};
 use serde_json::Value;
 
@@ -14,7 +14,7 @@ fn original(name: &str, version: &str) -> Table {
 
 #[tokio::test]
 async fn the_default_is_the_payload() {
-    let app = service();
+    let app = service().await;
     let payload = catalogue().version(ISO, "10").unwrap().payload().to_vec();
     for query in ["", "?", "?format=npz", "?precision=f64", "?channels=m,magnitude,fresnel,cells"] {
         let answer = get(&app, &at(ISO, "latest", &format!("/data{query}"))).await;
@@ -30,7 +30,7 @@ async fn the_default_is_the_payload() {
 
 #[tokio::test]
 async fn npz_comes_at_each_precision() {
-    let app = service();
+    let app = service().await;
     for name in [ISO, ANISO] {
         let table = original(name, "1");
         for precision in Precision::ALL {
@@ -48,7 +48,7 @@ async fn npz_comes_at_each_precision() {
 
 #[tokio::test]
 async fn channels_are_chosen() {
-    let app = service();
+    let app = service().await;
     let table = original(ISO, "1");
     for names in ["m", "magnitude,fresnel", "fresnel", "m,cells"] {
         let answer = get(&app, &at(ISO, "1", &format!("/data?channels={names}"))).await;
@@ -60,7 +60,7 @@ async fn channels_are_chosen() {
 
 #[tokio::test]
 async fn crops_keep_the_nodes_around_a_range() {
-    let app = service();
+    let app = service().await;
     let answer =
         get(&app, &at(ANISO, "1", "/data?alpha=0.3..0.6&lambda=0.5..1&theta=0..0.4&precision=f32")).await;
     assert_eq!(answer.status, StatusCode::OK, "{:?}", answer.body);
@@ -78,7 +78,7 @@ async fn crops_keep_the_nodes_around_a_range() {
 
 #[tokio::test]
 async fn fresnel_is_the_two_channels_alone() {
-    let app = service();
+    let app = service().await;
     let table = original(ISO, "2");
     let answer = get(&app, &at(ISO, "2", "/fresnel?precision=f32")).await;
     assert_eq!(answer.body, npz::write(&table, Precision::F32, Channels::FRESNEL).unwrap());
@@ -96,7 +96,7 @@ async fn fresnel_is_the_two_channels_alone() {
 
 #[tokio::test]
 async fn json_nests_the_arrays() {
-    let app = service();
+    let app = service().await;
     let table = original(ANISO, "1");
     let answer = get(&app, &at(ANISO, "1", "/data?format=json")).await;
     assert_eq!(answer.header("content-type"), "application/json");
@@ -128,7 +128,7 @@ fn lengths(nested: &Value) -> Vec<usize> {
 
 #[tokio::test]
 async fn ktx2_is_read_by_another_crate() {
-    let app = service();
+    let app = service().await;
     for (query, format) in [
         ("", ktx2::Format::R32G32B32A32_SFLOAT),
         ("&precision=f16", ktx2::Format::R16G16B16A16_SFLOAT),
@@ -145,7 +145,7 @@ async fn ktx2_is_read_by_another_crate() {
 
 #[tokio::test]
 async fn a_cropped_texture_has_a_manifest_of_its_part() {
-    let app = service();
+    let app = service().await;
     let answer = get(&app, &at(ISO, "1", "/data?format=ktx2&alpha=0.2..0.5")).await;
     let reader = ktx2::Reader::new(&answer.body[..]).unwrap();
     let manifest = reader.key_value_data().find(|(key, _)| *key == "LtcTable").unwrap().1;
@@ -159,7 +159,7 @@ async fn a_cropped_texture_has_a_manifest_of_its_part() {
 
 #[tokio::test]
 async fn parameters_that_mean_nothing_are_refused_by_name() {
-    let app = service();
+    let app = service().await;
     for (name, query, status, field) in [
         (ISO, "format=exr", 422, "format"),
         (ISO, "format=", 422, "format"),
@@ -209,7 +209,7 @@ async fn a_precision_that_cannot_hold_the_table_is_refused() {
     let (magnitude, fresnel) = (small.magnitude().to_vec(), small.fresnel().to_vec());
     let large = Table::new(small.axes().to_vec(), large, magnitude, fresnel, small.cells().clone()).unwrap();
     catalogue.insert(version("large", 1, &large));
-    let app = ltc_service::app(ltc_service::AppState::new(catalogue, Limits::default()));
+    let app = service_over(&catalogue, Settings::default()).await.0;
     for format in ["npz", "ktx2", "json"] {
         let answer = get(&app, &at("large", "1", &format!("/data?precision=f16&format={format}"))).await;
         assert_eq!(answer.status, StatusCode::UNPROCESSABLE_ENTITY);
@@ -222,24 +222,24 @@ async fn a_precision_that_cannot_hold_the_table_is_refused() {
 #[tokio::test]
 async fn variants_are_the_same_from_the_cache_without_one_and_all_at_once() {
     let path = at(ISO, "1", "/data?format=json&precision=f32");
-    let cached = service();
+    let cached = service().await;
     let first = get(&cached, &path).await;
     let again = get(&cached, &path).await;
     assert_eq!(again.body, first.body);
     assert_eq!(again.body.as_ptr(), first.body.as_ptr(), "not only equal: the same memory");
-    let uncached = service_with(Limits { cache_bytes: 0, ..Limits::default() });
+    let uncached = service_with(Limits { cache_bytes: 0, ..Limits::default() }).await;
     let (one, two) = (get(&uncached, &path).await, get(&uncached, &path).await);
     assert_eq!((&one.body, &two.body), (&first.body, &first.body));
     assert_ne!(one.body.as_ptr(), two.body.as_ptr());
     // Different variants asked for at the same time do not get each other's bytes.
-    let together = service();
+    let together = service().await;
     let tasks = (0..64).map(|i| {
         let app = together.clone();
         let (version, precision) = (["1", "2", "10"][i % 3], ["f16", "f32", "f64"][i % 5 % 3]);
         let path = at(ISO, version, &format!("/data?channels=m&precision={precision}"));
         tokio::spawn(async move {
             let answer = get(&app, &path).await;
-            let alone = get(&service(), &path).await;
+            let alone = get(&service().await, &path).await;
             assert_eq!(answer.body, alone.body);
             answer.header("etag").to_owned()
         })

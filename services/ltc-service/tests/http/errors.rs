@@ -3,18 +3,17 @@
 use std::convert::Infallible;
 use std::pin::Pin;
 use std::task::{Context, Poll};
-use std::time::Duration;
 
 use axum::body::{Body, Bytes, HttpBody};
 use axum::http::{Method, Request, StatusCode};
 use hyper::body::Frame;
-use ltc_service::Limits;
+use ltc_service::{Limits, Settings};
 
 use crate::support::*;
 
 #[tokio::test]
 async fn unknown_routes_are_problems() {
-    let app = service();
+    let app = service().await;
     for path in [
         "/v1",
         "/v1/",
@@ -28,8 +27,8 @@ async fn unknown_routes_are_problems() {
         "/v1/tables/ggx-isotropic/versions/1/data/",
         "/v1/tables/ggx-isotropic/versions/1/nothing",
         "/v1/tables/../tables",
-        "/metrics",
-        "/v1/refits",
+        "/metrics/",
+        "/v1/refits/",
     ] {
         for method in [Method::GET, Method::HEAD, Method::POST, Method::DELETE] {
             let answer = ask_with(&app, method, path, &[]).await;
@@ -41,7 +40,7 @@ async fn unknown_routes_are_problems() {
 
 #[tokio::test]
 async fn names_that_try_to_lead_elsewhere_are_names_that_do_not_exist() {
-    let app = service();
+    let app = service().await;
     for name in [
         "..",
         "%2e%2e",
@@ -79,7 +78,7 @@ async fn names_that_try_to_lead_elsewhere_are_names_that_do_not_exist() {
 
 #[tokio::test]
 async fn wrong_methods_are_told_the_right_ones() {
-    let app = service();
+    let app = service().await;
     let data = at(ISO, "1", "/data");
     let lookup = at(ISO, "1", "/lookup");
     for path in [
@@ -93,14 +92,20 @@ async fn wrong_methods_are_told_the_right_ones() {
         &data,
         &at(ISO, "1", "/fresnel"),
         &lookup,
+        "/v1/refits",
+        "/v1/benchmarks",
+        "/metrics",
+        "/openapi.json",
     ] {
+        let posts =
+            ["/v1/refits", "/v1/benchmarks", "/v1/tables/ggx-isotropic/versions", &lookup].contains(&path);
         for method in ["PUT", "DELETE", "PATCH", "OPTIONS", "TRACE", "BREW", "POST"] {
-            if path == lookup && method == "POST" {
+            if posts && method == "POST" {
                 continue;
             }
             let answer = ask_with(&app, Method::from_bytes(method.as_bytes()).unwrap(), path, &[]).await;
             assert_eq!(answer.status, StatusCode::METHOD_NOT_ALLOWED, "{method} {path}");
-            let allowed = if path == lookup { "GET,HEAD,POST" } else { "GET,HEAD" };
+            let allowed = if posts { "GET,HEAD,POST" } else { "GET,HEAD" };
             assert_eq!(answer.header("allow"), allowed);
             assert_eq!(answer.json()["type"], "urn:ltc:problem:method-not-allowed");
         }
@@ -109,7 +114,7 @@ async fn wrong_methods_are_told_the_right_ones() {
 
 #[tokio::test]
 async fn browsers_may_read_from_anywhere() {
-    let app = service();
+    let app = service().await;
     let headers = [
         ("origin", "https://example.org"),
         ("access-control-request-method", "GET"),
@@ -132,7 +137,7 @@ async fn browsers_may_read_from_anywhere() {
 
 #[tokio::test]
 async fn a_request_keeps_its_id_or_gets_one() {
-    let app = service();
+    let app = service().await;
     for path in ["/v1/tables", "/nowhere"] {
         let named = get_with(&app, path, &[("x-request-id", "build-42")]).await;
         assert_eq!(named.header("x-request-id"), "build-42");
@@ -161,13 +166,12 @@ impl HttpBody for Stalled {
 #[tokio::test]
 async fn a_body_that_does_not_come_is_not_waited_for() {
     let path = at(ISO, "1", "/lookup");
-    let short = Duration::from_millis(30);
     for (limits, status, slug) in [
-        (Limits { body_time: short, ..Limits::default() }, 408, "body-timeout"),
-        (Limits { request_time: short, ..Limits::default() }, 503, "timeout"),
+        (Limits { body_seconds: 0.03, ..Limits::default() }, 408, "body-timeout"),
+        (Limits { request_seconds: 0.03, ..Limits::default() }, 503, "timeout"),
     ] {
         let stalled = Body::new(Stalled(Some(Bytes::from_static(b"["))));
-        let answer = post(&service_with(limits), &path, stalled).await;
+        let answer = post(&service_with(limits).await, &path, stalled).await;
         assert_eq!(answer.status.as_u16(), status);
         assert_eq!(answer.json()["type"], format!("urn:ltc:problem:{slug}"));
     }
@@ -190,13 +194,13 @@ impl HttpBody for Lost {
 
 #[tokio::test]
 async fn a_body_that_breaks_off_is_malformed() {
-    let answer = post(&service(), &at(ISO, "1", "/lookup"), Body::new(Lost)).await;
+    let answer = post(&service().await, &at(ISO, "1", "/lookup"), Body::new(Lost)).await;
     assert_eq!(answer.status, StatusCode::BAD_REQUEST);
 }
 
 #[tokio::test]
 async fn thousands_of_malformed_requests_give_no_5xx() {
-    let app = service();
+    let app = service().await;
     let pieces = [
         "?",
         "&",
@@ -231,7 +235,7 @@ async fn thousands_of_malformed_requests_give_no_5xx() {
         (state >> 33) as usize % n
     };
     let mut seen = std::collections::BTreeMap::<u16, u32>::new();
-    for i in 0..3000 {
+    for i in 0..6000 {
         let mut path = if i % 2 == 0 { at(ISO, "1", "/lookup?") } else { "/v1/tables/".to_owned() };
         for _ in 0..1 + next(6) {
             path += pieces[next(pieces.len())];
@@ -244,4 +248,77 @@ async fn thousands_of_malformed_requests_give_no_5xx() {
     for status in [400, 404, 422] {
         assert!(seen.get(&status).is_some_and(|n| *n > 50), "the requests are of many kinds: {seen:?}");
     }
+}
+
+#[tokio::test]
+async fn thousands_of_malformed_writes_give_no_5xx_and_change_nothing() {
+    let limits = Limits { writes_per_second: 0, ..Limits::default() };
+    let service = Service::with(Settings { limits, ..Settings::default() }).await;
+    let routes = [
+        ("PUT", "/v1/tables/ggx-isotropic/aliases/stable"),
+        ("POST", "/v1/tables/ggx-isotropic/versions"),
+        ("POST", "/v1/refits"),
+        ("DELETE", "/v1/refits/x"),
+        ("POST", "/v1/benchmarks"),
+    ];
+    let types = [
+        "application/json",
+        "text/plain",
+        "multipart/form-data; boundary=b",
+        "multipart/form-data",
+        "",
+        "a/b;c",
+    ];
+    let pieces = [
+        "{",
+        "}",
+        "[",
+        "]",
+        "\"",
+        ":",
+        ",",
+        "null",
+        "1e999",
+        "-1",
+        "\"version\"",
+        "\"preset\"",
+        "\"spec\"",
+        "\"name\"",
+        "\"run\"",
+        "\"ggx-isotropic\"",
+        "\u{0}",
+        "--b\r\n",
+        "--b--",
+        "content-disposition: form-data; name=\"manifest\"\r\n\r\n",
+        "\\ud800",
+        "é",
+    ];
+    let before = get(&service.app, "/v1/tables/ggx-isotropic").await.body;
+    let mut state = 41_u64;
+    let mut next = |n: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % n
+    };
+    let mut seen = std::collections::BTreeMap::<u16, u32>::new();
+    for i in 0..4000 {
+        let (method, path) = routes[next(routes.len())];
+        let body: String = (0..next(12)).map(|_| pieces[next(pieces.len())]).collect();
+        let bad = "Bearer ltc_0123456789ab_x";
+        let authorization = if i % 4 == 0 { bad } else { &service.token };
+        let headers = [
+            ("content-type", types[next(types.len())]),
+            ("authorization", authorization),
+            ("if-match", "\"x\""),
+        ];
+        let answer = send(&service.app, method, path, &headers, body.clone()).await;
+        let status = answer.status.as_u16();
+        assert!((400..500).contains(&status), "{method} {path} {body:?}: {status}");
+        *seen.entry(status).or_default() += 1;
+    }
+    for status in [400, 401, 404, 415] {
+        assert!(seen.get(&status).is_some_and(|n| *n > 50), "the requests are of many kinds: {seen:?}");
+    }
+    assert_eq!(get(&service.app, "/v1/tables/ggx-isotropic").await.body, before);
+    assert_eq!(get(&service.app, "/v1/refits").await.body, "{\"refits\":[]}");
+    assert_eq!(get(&service.app, "/v1/benchmarks").await.body, "{\"benchmarks\":[]}");
 }

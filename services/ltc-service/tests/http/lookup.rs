@@ -27,7 +27,7 @@ fn queries() -> Vec<Query> {
 
 #[tokio::test]
 async fn a_lookup_is_what_the_table_says() {
-    let app = service();
+    let app = service().await;
     for query in queries() {
         let Query { theta, phi, alpha_x, alpha_y } = query;
         let rest = format!("/lookup?theta={theta}&phi={phi}&alpha_x={alpha_x}&alpha_y={alpha_y}");
@@ -44,7 +44,7 @@ async fn a_lookup_is_what_the_table_says() {
 
 #[tokio::test]
 async fn phi_is_0_where_it_is_not_given() {
-    let app = service();
+    let app = service().await;
     let rest = "/lookup?theta=0.7&alpha_x=0.4&alpha_y=0.1";
     let without = get(&app, &at(ANISO, "1", rest)).await;
     assert_eq!(without.body, get(&app, &at(ANISO, "1", &format!("{rest}&phi=0"))).await.body);
@@ -53,7 +53,7 @@ async fn phi_is_0_where_it_is_not_given() {
 
 #[tokio::test]
 async fn numbers_that_are_none_are_refused_by_name() {
-    let app = service();
+    let app = service().await;
     for (query, status, field) in [
         ("theta=NaN&alpha_x=0.1&alpha_y=0.1", 422, "theta"),
         ("theta=nan&alpha_x=0.1&alpha_y=0.1", 422, "theta"),
@@ -87,7 +87,7 @@ async fn numbers_that_are_none_are_refused_by_name() {
 
 #[tokio::test]
 async fn an_isotropic_table_refuses_two_widths() {
-    let app = service();
+    let app = service().await;
     let answer = get(&app, &at(ISO, "1", "/lookup?theta=0.5&alpha_x=0.2&alpha_y=0.3")).await;
     assert_eq!(answer.status, StatusCode::UNPROCESSABLE_ENTITY);
     assert!(answer.json()["detail"].as_str().unwrap().contains("isotropic"));
@@ -97,7 +97,7 @@ async fn an_isotropic_table_refuses_two_widths() {
 
 #[tokio::test]
 async fn a_batch_answers_in_order() {
-    let app = service();
+    let app = service().await;
     let queries = queries();
     let answer = post(&app, &at(ANISO, "latest", "/lookup"), serde_json::to_vec(&queries).unwrap()).await;
     assert_eq!(answer.status, StatusCode::OK);
@@ -111,7 +111,7 @@ async fn a_batch_answers_in_order() {
 
 #[tokio::test]
 async fn a_bad_item_spoils_only_itself() {
-    let app = service();
+    let app = service().await;
     let good = r#"{"theta":0.7,"alpha_x":0.4,"alpha_y":0.1}"#;
     let bad = [
         (r#"{"theta":1.6,"alpha_x":0.4,"alpha_y":0.1}"#, "theta"),
@@ -142,7 +142,7 @@ async fn a_bad_item_spoils_only_itself() {
 
 #[tokio::test]
 async fn a_body_that_is_no_array_is_refused_whole() {
-    let app = service();
+    let app = service().await;
     let path = at(ANISO, "1", "/lookup");
     for (body, status) in [
         ("", 400),
@@ -171,7 +171,7 @@ async fn a_body_that_is_no_array_is_refused_whole() {
 #[tokio::test]
 async fn bodies_have_a_type_a_size_and_a_number_of_queries() {
     let limits = Limits { body_bytes: 1000, batch_queries: 3, ..Limits::default() };
-    let app = service_with(limits);
+    let app = service_with(limits).await;
     let path = at(ANISO, "1", "/lookup");
     for (content_type, status) in [
         ("application/json", 200),
@@ -202,7 +202,7 @@ async fn bodies_have_a_type_a_size_and_a_number_of_queries() {
 
 #[tokio::test]
 async fn the_default_limits_hold() {
-    let app = service();
+    let app = service().await;
     let path = at(ANISO, "1", "/lookup");
     let mebibyte = format!("[{}]", " ".repeat((1 << 20) - 2));
     assert_eq!(post(&app, &path, mebibyte.clone()).await.status, StatusCode::OK);
@@ -213,4 +213,57 @@ async fn the_default_limits_hold() {
     assert_eq!(answers.len(), 10_000);
     assert!(answers.iter().all(|a| *a == answers[0]));
     assert_eq!(post(&app, &path, batch(10_001)).await.status, StatusCode::PAYLOAD_TOO_LARGE);
+}
+
+#[tokio::test]
+async fn numbers_in_give_numbers_out() {
+    let app = service().await;
+    let queries = [[0.5, 0.3, 0.4, 0.1], [0.0, 7.0, 0.1, 0.9]];
+    let path = at(ANISO, "1", "/lookup");
+    let table = catalogue().version(ANISO, "1").unwrap().table().clone();
+    let expected: Vec<f64> = queries
+        .iter()
+        .flat_map(|&[theta, phi, alpha_x, alpha_y]| {
+            let found = table.lookup(&Query { theta, phi, alpha_x, alpha_y }).unwrap();
+            let lobes = found.lobes.iter().flat_map(|l| [l.weight].into_iter().chain(l.m));
+            [found.magnitude, found.fresnel].into_iter().chain(lobes).collect::<Vec<_>>()
+        })
+        .collect();
+    let body: Vec<u8> = queries.iter().flatten().flat_map(|v: &f64| v.to_le_bytes()).collect();
+    let answer =
+        send(&app, "POST", &path, &[("content-type", "application/vnd.ltc.queries.f64")], body).await;
+    assert_eq!(answer.header("content-type"), "application/vnd.ltc.lookups.f64");
+    let found: Vec<f64> = answer.body.chunks(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect();
+    assert_eq!(found, expected);
+    // Queries that single precision holds, so that only the answer is rounded.
+    let body: Vec<u8> = [0.5_f32, 0.25, 0.5, 0.125].iter().flat_map(|v| v.to_le_bytes()).collect();
+    let answer =
+        send(&app, "POST", &path, &[("content-type", "application/vnd.ltc.queries.f32")], body).await;
+    let found: Vec<f32> = answer.body.chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
+    let exact = table.lookup(&Query { theta: 0.5, phi: 0.25, alpha_x: 0.5, alpha_y: 0.125 }).unwrap();
+    assert_eq!((found.len(), found[0], found[3]), (12, exact.magnitude as f32, exact.lobes[0].m[0] as f32));
+}
+
+#[tokio::test]
+async fn numbers_that_are_no_queries_are_refused() {
+    let app = service_with(Limits { batch_queries: 3, ..Limits::default() }).await;
+    let path = at(ANISO, "1", "/lookup");
+    let bytes = |numbers: &[f64]| numbers.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
+    let good = [0.5, 0.3, 0.4, 0.1];
+    for (body, status) in [
+        (bytes(&good), 200),
+        (Vec::new(), 200),
+        (bytes(&good[..3]), 400),
+        (vec![0; 31], 400),
+        (bytes(&[good, [f64::NAN, 0.0, 0.5, 0.5]].concat()), 422),
+        (bytes(&[0.5, 0.3, -0.4, 0.1]), 422),
+        (bytes(&good.repeat(4)), 413),
+    ] {
+        let headers = [("content-type", "application/vnd.ltc.queries.f64")];
+        let answer = send(&app, "POST", &path, &headers, body.clone()).await;
+        assert_eq!(answer.status.as_u16(), status, "{} bytes {:?}", body.len(), answer.body);
+        if status == 422 && body.len() > 32 {
+            assert_eq!(answer.field(), "query 1");
+        }
+    }
 }

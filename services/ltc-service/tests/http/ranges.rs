@@ -6,7 +6,7 @@ use crate::support::*;
 
 #[tokio::test]
 async fn one_range_gives_its_bytes() {
-    let app = service();
+    let app = service().await;
     for rest in ["/data", "/data?format=ktx2", "/fresnel?precision=f32"] {
         let path = at(ISO, "1", rest);
         let full = get(&app, &path).await;
@@ -35,7 +35,7 @@ async fn one_range_gives_its_bytes() {
 
 #[tokio::test]
 async fn parts_put_together_are_the_whole() {
-    let app = service();
+    let app = service().await;
     let path = at(ANISO, "1", "/data");
     let full = get(&app, &path).await.body;
     let mut together = Vec::new();
@@ -48,7 +48,7 @@ async fn parts_put_together_are_the_whole() {
 
 #[tokio::test]
 async fn ranges_outside_are_416_with_the_length() {
-    let app = service();
+    let app = service().await;
     let path = at(ISO, "1", "/data");
     let n = get(&app, &path).await.body.len();
     for range in
@@ -63,7 +63,7 @@ async fn ranges_outside_are_416_with_the_length() {
 
 #[tokio::test]
 async fn what_is_not_one_byte_range_gives_the_whole() {
-    let app = service();
+    let app = service().await;
     let path = at(ISO, "1", "/data");
     let full = get(&app, &path).await;
     for range in ["bytes=0-1,4-5", "bytes=5-2", "bytes=x-y", "bytes=", "items=0-5", "0-5", "bytes 0-5"] {
@@ -81,7 +81,7 @@ async fn what_is_not_one_byte_range_gives_the_whole() {
 
 #[tokio::test]
 async fn if_range_serves_a_part_only_of_what_the_client_has() {
-    let app = service();
+    let app = service().await;
     let path = at(ISO, "latest", "/data");
     let full = get(&app, &path).await;
     let tag = full.header("etag");
@@ -108,7 +108,7 @@ async fn if_range_serves_a_part_only_of_what_the_client_has() {
 
 #[tokio::test]
 async fn preconditions_come_before_ranges() {
-    let app = service();
+    let app = service().await;
     let path = at(ISO, "1", "/data");
     let tag = get(&app, &path).await.header("etag").to_owned();
     for range in ["bytes=0-9", "bytes=99999999-"] {

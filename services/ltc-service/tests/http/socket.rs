@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
-use ltc_service::{Limits, ServeConfig, ServeError, Stop, serve_until};
+use ltc_service::{Limits, ServeError, Settings, Stop, serve_until};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::sync::{oneshot, watch};
@@ -18,12 +18,12 @@ struct Server {
 }
 
 impl Server {
-    async fn start(config: ServeConfig) -> Self {
+    async fn start(config: Settings) -> Self {
         let (stop, stopped) = watch::channel(Stop::No);
         let (ready, address) = oneshot::channel();
-        let config = ServeConfig { listen: "127.0.0.1:0".to_owned(), ..config };
+        let config = Settings { listen: "127.0.0.1:0".to_owned(), ..config };
         let on_ready = move |address| ready.send(address).unwrap();
-        let task = tokio::spawn(serve_until(config, catalogue(), on_ready, stopped));
+        let task = tokio::spawn(serve_until(state_over(&catalogue(), config).await.0, on_ready, stopped));
         Self { address: address.await.unwrap(), stop, task }
     }
 
@@ -63,7 +63,7 @@ fn parts(answer: &[u8]) -> (String, &[u8]) {
 
 #[tokio::test]
 async fn the_wire_has_what_the_router_said() {
-    let server = Server::start(ServeConfig::default()).await;
+    let server = Server::start(Settings::default()).await;
     let path = at(ISO, "1", "/data");
     let payload = catalogue().version(ISO, "1").unwrap().payload().to_vec();
 
@@ -92,7 +92,7 @@ async fn the_wire_has_what_the_router_said() {
 
 #[tokio::test]
 async fn a_connection_is_used_again_after_errors() {
-    let server = Server::start(ServeConfig::default()).await;
+    let server = Server::start(Settings::default()).await;
     let mut stream = server.connect().await;
     let lookup = at(ANISO, "1", "/lookup");
     for (head, status) in [
@@ -110,7 +110,7 @@ async fn a_connection_is_used_again_after_errors() {
 
 #[tokio::test]
 async fn a_large_body_is_refused_over_the_wire() {
-    let server = Server::start(ServeConfig::default()).await;
+    let server = Server::start(Settings::default()).await;
     let headers = "content-type: application/json\r\ncontent-length: 1100000\r\n";
     let mut sent = request("POST", &at(ANISO, "1", "/lookup"), headers);
     sent.extend(std::iter::repeat_n(b' ', 1_100_000));
@@ -122,7 +122,7 @@ async fn a_large_body_is_refused_over_the_wire() {
 
 #[tokio::test]
 async fn what_is_no_http_ends_the_connection_and_nothing_else() {
-    let server = Server::start(ServeConfig::default()).await;
+    let server = Server::start(Settings::default()).await;
     let long = format!("GET /{} HTTP/1.1\r\n\r\n", "a".repeat(200_000));
     for junk in
         [&b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03"[..], b"GET / HTTP/9.9\r\n\r\n", long.as_bytes()]
@@ -143,8 +143,8 @@ async fn what_is_no_http_ends_the_connection_and_nothing_else() {
 
 #[tokio::test]
 async fn headers_that_do_not_come_are_not_waited_for() {
-    let limits = Limits { header_time: Duration::from_millis(100), ..Limits::default() };
-    let server = Server::start(ServeConfig { limits, ..ServeConfig::default() }).await;
+    let limits = Limits { header_seconds: 0.1, ..Limits::default() };
+    let server = Server::start(Settings { limits, ..Settings::default() }).await;
     let start = Instant::now();
     server.exchange(b"GET / HTTP/1.1\r\nhost: te").await;
     assert!(start.elapsed() < Duration::from_secs(3));
@@ -152,7 +152,7 @@ async fn headers_that_do_not_come_are_not_waited_for() {
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn many_clients_at_once_get_what_they_asked_for() {
-    let server = Server::start(ServeConfig::default()).await;
+    let server = Server::start(Settings::default()).await;
     let expected: Vec<Vec<u8>> =
         ["1", "2", "10"].map(|v| catalogue().version(ISO, v).unwrap().payload().to_vec()).into();
     let clients = (0..50).map(|i| {
@@ -186,7 +186,7 @@ async fn half_a_request(server: &Server) -> TcpStream {
 
 #[tokio::test]
 async fn stopping_finishes_what_is_under_way() {
-    let server = Server::start(ServeConfig::default()).await;
+    let server = Server::start(Settings::default()).await;
     let idle = server.connect().await;
     let mut busy = half_a_request(&server).await;
     server.stop.send(Stop::Drain).unwrap();
@@ -202,7 +202,7 @@ async fn stopping_finishes_what_is_under_way() {
 
 #[tokio::test]
 async fn stopping_does_not_wait_for_ever() {
-    let config = ServeConfig { drain_time: Duration::from_millis(100), ..ServeConfig::default() };
+    let config = Settings { drain_seconds: 0.1, ..Settings::default() };
     let server = Server::start(config).await;
     let mut busy = half_a_request(&server).await;
     server.stop.send(Stop::Drain).unwrap();
@@ -212,7 +212,7 @@ async fn stopping_does_not_wait_for_ever() {
 
 #[tokio::test]
 async fn a_second_signal_ends_the_waiting() {
-    let config = ServeConfig { drain_time: Duration::from_secs(600), ..ServeConfig::default() };
+    let config = Settings { drain_seconds: 600.0, ..Settings::default() };
     let server = Server::start(config).await;
     let _busy = half_a_request(&server).await;
     server.stop.send(Stop::Drain).unwrap();
@@ -224,24 +224,24 @@ async fn a_second_signal_ends_the_waiting() {
 
 #[tokio::test]
 async fn a_dropped_sender_stops_gracefully() {
-    let Server { stop, task, .. } = Server::start(ServeConfig::default()).await;
+    let Server { stop, task, .. } = Server::start(Settings::default()).await;
     drop(stop);
     tokio::time::timeout(Duration::from_secs(5), task).await.unwrap().unwrap().unwrap();
 }
 
 #[tokio::test]
 async fn an_address_that_cannot_be_had_is_one_clear_line() {
-    let server = Server::start(ServeConfig::default()).await;
+    let server = Server::start(Settings::default()).await;
     for (listen, needle) in [
         (server.address.to_string(), "the address is in use"),
         ("no port".to_owned(), "no port"),
         ("192.0.2.1:0".to_owned(), "does not have that address"),
         ("127.0.0.1:99999".to_owned(), "127.0.0.1:99999"),
     ] {
-        let config = ServeConfig { listen: listen.clone(), ..ServeConfig::default() };
+        let config = Settings { listen: listen.clone(), ..Settings::default() };
         let (_sender, stop) = watch::channel(Stop::No);
         let on_ready = |_| panic!("it is not ready");
-        let error = serve_until(config, catalogue(), on_ready, stop).await.unwrap_err();
+        let error = serve_until(state_over(&catalogue(), config).await.0, on_ready, stop).await.unwrap_err();
         let line = error.to_string();
         assert!(line.starts_with(&format!("cannot listen on {listen}: ")), "{line}");
         assert!(line.contains(needle) && !line.contains('\n'), "{line}");

@@ -7,7 +7,10 @@ use axum::body::{Body, Bytes};
 use axum::http::{HeaderMap, Method, Request, StatusCode};
 use glam::DMat3;
 use http_body_util::BodyExt;
-use ltc_service::{AppState, Limits, app};
+use std::sync::Arc;
+
+use ltc_service::{AppState, Limits, Settings, Stores, app};
+use ltc_store::{MemoryStore, Metadata, Scope, Secret};
 use ltc_table::{
     Axis, BrdfInfo, Catalogue, CellStats, DrawErrors, Errors, Floors, Manifest, Mapping, Quantity, Table,
     TableVersion, digest::digest,
@@ -117,12 +120,25 @@ pub fn catalogue() -> Catalogue {
     catalogue
 }
 
-pub fn service() -> Router {
-    service_with(Limits::default())
+pub async fn service() -> Router {
+    service_with(Limits::default()).await
 }
 
-pub fn service_with(limits: Limits) -> Router {
-    app(AppState::new(catalogue(), limits))
+pub async fn service_with(limits: Limits) -> Router {
+    service_over(&catalogue(), Settings { limits, ..Settings::default() }).await.0
+}
+
+/// A service over a store in memory with these tables, and the store.
+pub async fn service_over(catalogue: &Catalogue, settings: Settings) -> (Router, Arc<MemoryStore>) {
+    let (state, store) = state_over(catalogue, settings).await;
+    (app(state), store)
+}
+
+pub async fn state_over(catalogue: &Catalogue, settings: Settings) -> (AppState, Arc<MemoryStore>) {
+    let store = Arc::new(MemoryStore::default());
+    ltc_store::seed(&*store, &*store, catalogue, &|_| None).await.unwrap();
+    let stores = Stores::of(Arc::clone(&store));
+    (AppState::new(stores, settings).await.unwrap(), store)
 }
 
 pub fn digest_of(name: &str, version: &str) -> String {
@@ -207,4 +223,54 @@ pub async fn get(app: &Router, path: &str) -> Answer {
 pub async fn post(app: &Router, path: &str, body: impl Into<Body>) -> Answer {
     let request = Request::post(path).header("content-type", "application/json").body(body.into());
     ask(app, request.unwrap()).await
+}
+
+/// A new token with these scopes, as an `Authorization` header.
+pub async fn token(store: &MemoryStore, scopes: &[Scope]) -> String {
+    let (token, secret) = Secret::generate("test", scopes.iter().copied().collect(), None).unwrap();
+    store.add_token(token).await.unwrap();
+    format!("Bearer {}", secret.reveal())
+}
+
+/// A request with headers and a body.
+pub async fn send(
+    app: &Router,
+    method: &str,
+    path: &str,
+    headers: &[(&str, &str)],
+    body: impl Into<Body>,
+) -> Answer {
+    let mut request = Request::builder().method(method).uri(path);
+    for (name, value) in headers {
+        request = request.header(*name, *value);
+    }
+    ask(app, request.body(body.into()).unwrap()).await
+}
+
+pub const JSON: (&str, &str) = ("content-type", "application/json");
+
+/// A service with its store and a token for everything.
+pub struct Service {
+    pub app: Router,
+    pub store: Arc<MemoryStore>,
+    pub token: String,
+}
+
+impl Service {
+    pub async fn new() -> Self {
+        Self::with(Settings::default()).await
+    }
+
+    pub async fn with(settings: Settings) -> Self {
+        let (state, store) = state_over(&catalogue(), settings).await;
+        let token = token(&store, &Scope::ALL).await;
+        Self { app: app(state), store, token }
+    }
+
+    /// A request in JSON with the token.
+    pub async fn write(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &Value) -> Answer {
+        let mut all = vec![JSON, ("authorization", &self.token)];
+        all.extend(headers);
+        send(&self.app, method, path, &all, body.to_string()).await
+    }
 }

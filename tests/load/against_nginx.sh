@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# Requests a second of the service and of nginx for the same bytes, one after the other on the same machine, and the ratio.
+# Usage: tests/load/against_nginx.sh SERVER [TABLE]
+set -euo pipefail
+server=$(realpath "$1")
+table=${2:-ggx-isotropic}
+seconds=${SECONDS_EACH:-8}
+rounds=${ROUNDS:-3}
+folder=$(mktemp -d)
+trap 'kill "${pids[@]}" 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$folder"' EXIT
+pids=()
+
+LTC_LISTEN=127.0.0.1:0 LTC_DATA=$folder/data LTC_LOG=warn "$server" >"$folder/url" &
+pids+=($!)
+until [ -s "$folder/url" ]; do sleep 0.1; done
+url=$(cat "$folder/url")
+digest=$(curl -fsS "$url/v1/tables/$table" | python3 -c 'import json, sys; print(json.load(sys.stdin)["digest"])')
+ours=$url/v1/tables/$table/versions/$digest/data
+
+mkdir -p "$folder/www"
+curl -fsS "$ours" -o "$folder/www/table.npz"
+port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+cat >"$folder/nginx.conf" <<CONF
+worker_processes auto;
+pid $folder/nginx.pid;
+error_log stderr warn;
+daemon off;
+events { worker_connections 1024; }
+http {
+    access_log off;
+    sendfile on;
+    tcp_nopush on;
+    keepalive_requests 1000000000;
+    client_body_temp_path $folder/1; proxy_temp_path $folder/2; fastcgi_temp_path $folder/3; uwsgi_temp_path $folder/4; scgi_temp_path $folder/5;
+    server { listen 127.0.0.1:$port; root $folder/www; add_header Cache-Control "public, max-age=31536000, immutable"; }
+}
+CONF
+# Its master may start as root; its workers must read the folder.
+chmod 755 "$folder" "$folder/www"
+nginx -c "$folder/nginx.conf" -p "$folder" &
+pids+=($!)
+theirs=http://127.0.0.1:$port/table.npz
+until curl -fsS "$theirs" -o "$folder/again" 2>/dev/null; do sleep 0.1; done
+cmp "$folder/www/table.npz" "$folder/again"
+tag() { curl -fsSI "$1" | tr -d '\r' | sed -n 's/^[Ee][Tt][Aa][Gg]: //p'; }
+echo "$table: $(stat -c %s "$folder/www/table.npz") bytes; load average $(cut -d' ' -f1-3 /proc/loadavg)"
+
+# Processor time that a server and its children have used so far, in hundredths of a second.
+used() { cat /proc/"$1"/stat $(pgrep -P "$1" | sed 's|.*|/proc/&/stat|') | awk '{ sub(/.*\) /, ""); t += $12 + $13 } END { print t }'; }
+# Requests a second, and microseconds of processor time for each: the second figure hardly depends on who else is busy.
+measure() {
+    local pid=$1 before after
+    shift
+    before=$(used "$pid")
+    wrk -t1 -c"${CONNECTIONS:-32}" -d"${seconds}s" "$@" >"$folder/wrk"
+    after=$(used "$pid")
+    awk -v ticks=$((after - before)) '/requests in/ { n = $1 } /^Requests\/sec/ { print $2, ticks * 10000 / n }' "$folder/wrk"
+}
+for round in $(seq "$rounds"); do
+    a=$(measure "${pids[0]}" "$ours"); b=$(measure "${pids[1]}" "$theirs")
+    c=$(measure "${pids[0]}" -H "If-None-Match: $(tag "$ours")" "$ours")
+    d=$(measure "${pids[1]}" -H "If-None-Match: $(tag "$theirs")" "$theirs")
+    python3 - "$round" $a $b $c $d <<'PY'
+import sys
+a, at, b, bt, c, ct, d, dt = map(float, sys.argv[2:])
+print(f"round {sys.argv[1]}: 200 {a:.0f}/s ({at:.1f} us), nginx {b:.0f}/s ({bt:.1f} us), ratio {a / b:.2f}; "
+      f"304 {c:.0f}/s ({ct:.1f} us), nginx {d:.0f}/s ({dt:.1f} us), ratio {c / d:.2f}")
+PY
+done
+echo "load average $(cut -d' ' -f1-3 /proc/loadavg)"
