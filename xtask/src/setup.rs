@@ -1,8 +1,11 @@
-//! `cargo xtask setup`: a driver for the GPU parts.
+//! `cargo xtask setup`: a driver for the GPU parts, and compilers that judge the shaders which are exported.
+
+use std::process::Command;
 
 use anyhow::{Result, bail};
 
 use crate::apt;
+use crate::process;
 use crate::say::say;
 use crate::vulkan::Search;
 
@@ -34,4 +37,30 @@ pub fn graphics() -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Programs that tests call, and Debian's packages of them.
+const COMPILERS: [(&str, &str); 2] = [("glslangValidator", "glslang-tools"), ("spirv-val", "spirv-tools")];
+
+/// Finds the compilers, or installs them where that can be done. Elsewhere the tests that need them say so.
+pub fn compilers() -> Result<()> {
+    let here = |program: &str| process::works(Command::new(program).arg("--version"));
+    let missing: Vec<_> = COMPILERS.into_iter().filter(|(program, _)| !here(program)).collect();
+    if missing.is_empty() {
+        say(format_args!("    found {}", COMPILERS.map(|(program, _)| program).join(" and ")));
+        return Ok(());
+    }
+    let packages: Vec<_> = missing.iter().map(|(_, package)| *package).collect();
+    if !apt::is_here() {
+        say(format_args!(
+            "    there is no {}: tests of exported shaders will be skipped",
+            packages.join(", no ")
+        ));
+        return Ok(());
+    }
+    apt::install(&packages)?;
+    match COMPILERS.into_iter().find(|(program, _)| !here(program)) {
+        None => Ok(()),
+        Some((program, package)) => bail!("{package} is installed, and {program} is still missing"),
+    }
 }

@@ -45,6 +45,7 @@ enum Command {
     Integrate(commands::integrate::Integrate),
     Export(commands::export::Export),
     Render(commands::render::Render),
+    Shader(commands::shader::Shader),
 }
 
 fn main() -> ExitCode {
@@ -61,6 +62,7 @@ fn main() -> ExitCode {
         Command::Integrate(command) => command.run(tables),
         Command::Export(command) => command.run(tables),
         Command::Render(command) => command.run(tables),
+        Command::Shader(command) => command.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -30,26 +30,50 @@
 //! # Ok::<(), ltc_shade_gpu::GpuError>(())
 //! ```
 
+#[cfg(feature = "device")]
 mod compute;
 mod constants;
+#[cfg(feature = "device")]
 mod device;
+#[cfg(feature = "device")]
 mod error;
+#[cfg(feature = "export")]
+mod export;
+mod filtering;
+#[cfg(feature = "device")]
 mod integrate;
+#[cfg(feature = "device")]
 mod layout;
+#[cfg(feature = "device")]
 mod light;
+#[cfg(feature = "device")]
 mod lookup;
 pub mod modules;
 mod request;
+#[cfg(feature = "device")]
 mod shade;
+#[cfg(feature = "device")]
 mod surface;
+#[cfg(feature = "device")]
 mod table_textures;
 
-pub use device::{Filtering, Gpu, GpuInfo, GpuOptions};
+#[cfg(feature = "device")]
+pub use device::{Gpu, GpuInfo, GpuOptions};
+#[cfg(feature = "device")]
 pub use error::GpuError;
+#[cfg(feature = "export")]
+pub use export::{Code, ExportError, Exported, Language};
+pub use filtering::Filtering;
+#[cfg(feature = "device")]
 pub use integrate::{LightJob, Lights, PolygonJob, Polygons};
+#[cfg(feature = "device")]
 pub use light::{AreaLight, LightShape};
+#[cfg(feature = "device")]
 pub use lookup::{LookupResult, Lookups};
 pub use request::{Feature, LightKind, ShaderRequest, UnknownName};
+#[cfg(feature = "device")]
 pub use shade::Shader;
+#[cfg(feature = "device")]
 pub use surface::SurfacePoint;
+#[cfg(feature = "device")]
 pub use table_textures::{TableTextures, Tables};

@@ -200,11 +200,10 @@ fn select(source: &str, symbols: &[&str]) -> String {
     kept
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "export"))]
 mod tests {
     use super::*;
     use crate::{LightKind, ShaderRequest};
-    use wgpu::naga;
 
     fn validate(source: &str) -> Result<naga::Module, String> {
         let module = naga::front::wgsl::parse_str(source).map_err(|e| e.emit_to_string(source))?;

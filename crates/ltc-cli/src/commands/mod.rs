@@ -7,5 +7,6 @@ pub mod integrate;
 pub mod lookup;
 pub mod render;
 pub mod serve;
+pub mod shader;
 pub mod tables;
 pub mod verify;

@@ -2,8 +2,19 @@
 
 use crate::support::ltc;
 
-const VERBS: [&str; 10] =
-    ["serve", "fit", "tables", "inspect", "diff", "verify", "lookup", "integrate", "export", "render"];
+const VERBS: [&str; 11] = [
+    "serve",
+    "fit",
+    "tables",
+    "inspect",
+    "diff",
+    "verify",
+    "lookup",
+    "integrate",
+    "export",
+    "render",
+    "shader",
+];
 
 #[test]
 fn every_verb_is_listed_and_its_help_has_an_example() {

@@ -11,5 +11,6 @@ mod render;
 mod resume;
 #[cfg(unix)]
 mod serve;
+mod shader;
 mod support;
 mod tables;

@@ -1,0 +1,10 @@
+//! Shaders in other languages: what outside compilers say of them, whether they are current, and what they compute.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
+
+mod equality;
+mod golden;
+mod support;
+mod triples;
+mod validators;
+mod vulkan;
