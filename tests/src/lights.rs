@@ -1,5 +1,7 @@
 //! Random lights of every kind, and the ways to integrate them that the workspace has.
 
+use std::sync::LazyLock;
+
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use ltc_core::points::SplitMix64;
 use ltc_core::{Horizon, Ltc, Matrix as _, Sides};
@@ -35,6 +37,9 @@ pub struct LightsOnGpu {
     lights: Lights,
 }
 
+/// Those that can run here, opened once for all tests of a process.
+static DEVICES: LazyLock<Vec<LightsOnGpu>> = LazyLock::new(LightsOnGpu::all);
+
 impl LightBackEnd for LightsF64 {
     fn name(&self) -> String {
         "CPU f64".to_owned()
@@ -69,7 +74,7 @@ impl LightsOnGpu {
     ///
     /// # Panics
     /// For any other fault of a device, and without any device where `CI` is set.
-    pub fn all() -> Vec<Self> {
+    fn all() -> Vec<Self> {
         let mut found: Vec<Self> = Vec::new();
         for backend in [None, Some("gl")] {
             match Gpu::new(GpuOptions { backend, ..GpuOptions::default() }) {
@@ -90,7 +95,7 @@ impl LightsOnGpu {
     }
 }
 
-impl LightBackEnd for LightsOnGpu {
+impl LightBackEnd for &'static LightsOnGpu {
     fn name(&self) -> String {
         self.gpu.info().to_string()
     }
@@ -104,7 +109,7 @@ impl LightBackEnd for LightsOnGpu {
 /// Every back end that can run here but the truth.
 pub fn light_back_ends() -> Vec<Box<dyn LightBackEnd>> {
     let mut list: Vec<Box<dyn LightBackEnd>> = vec![Box::new(LightsF32)];
-    list.extend(LightsOnGpu::all().into_iter().map(|gpu| Box::new(gpu) as _));
+    list.extend(DEVICES.iter().map(|gpu| Box::new(gpu) as _));
     list
 }
 

@@ -15,7 +15,8 @@ fn ltc_disk(
     const two_sided = false;
 //#endif
     let n = ltc_unit_or_zero(normal);
-    let facing = ltc_facing(n, centre / max(ltc_largest_component(centre), LTC_TINY));
+    let c = centre / max(ltc_largest_component(centre), LTC_TINY);
+    let facing = ltc_facing(n, c, length(c));
     if !ltc_emits_towards(facing, two_sided) {
         return 0.0;
     }

@@ -16,7 +16,8 @@ fn ltc_ellipse(
 //#endif
     let size = max(ltc_largest_component(centre), max(ltc_largest_component(axis_u), ltc_largest_component(axis_v)));
     let shrink = 1.0 / max(size, LTC_TINY);
-    let facing = ltc_facing(ltc_cross(axis_u * shrink, axis_v * shrink), centre * shrink);
+    let c = centre * shrink;
+    let facing = ltc_facing(ltc_cross(axis_u * shrink, axis_v * shrink), c, length(c));
     if !ltc_emits_towards(facing, two_sided) {
         return 0.0;
     }

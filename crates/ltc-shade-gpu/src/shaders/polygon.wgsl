@@ -49,7 +49,7 @@ fn ltc_polygon_fraction(
 //#ifnot two_sided
     const two_sided = false;
 //#endif
-    let facing = ltc_facing((*polygon).area, (*polygon).first / (*polygon).scale);
+    let facing = ltc_facing((*polygon).area, (*polygon).first / (*polygon).scale, 1.0);
     if !(ltc_emits_towards(facing, two_sided) && lobe.valid) {
         return 0.0;
     }

@@ -39,7 +39,7 @@ fn ltc_quad(
     var c = v2 / scale;
     var d = v3 / scale;
     // The two terms of Newell's sum in one: the cross product of the diagonals.
-    let facing = ltc_facing(ltc_cross(c - a, d - b), a);
+    let facing = ltc_facing(ltc_cross(c - a, d - b), a, 1.0);
     if !ltc_emits_towards(facing, two_sided) {
         return 0.0;
     }
