@@ -5,6 +5,7 @@ use std::process::Command;
 use anyhow::{Result, bail};
 
 use crate::apt;
+use crate::interrupt::Interrupted;
 use crate::process;
 use crate::say::say;
 use crate::vulkan::Search;
@@ -39,28 +40,36 @@ pub fn graphics() -> Result<()> {
     Ok(())
 }
 
-/// Programs that tests call, and Debian's packages of them.
-const COMPILERS: [(&str, &str); 2] = [("glslangValidator", "glslang-tools"), ("spirv-val", "spirv-tools")];
+/// Programs that tests call, and Debian's packages of them: compilers, and a browser for GLSL ES.
+const COMPILERS: [(&str, &str); 3] =
+    [("glslangValidator", "glslang-tools"), ("spirv-val", "spirv-tools"), ("chromium", "chromium")];
 
-/// Finds the compilers, or installs them where that can be done. Elsewhere the tests that need them say so.
+/// Finds the compilers, or installs them where that can be done. What is missing in the end is no error here: the tests that
+/// need it say so, and on a build server they fail.
 pub fn compilers() -> Result<()> {
-    let here = |program: &str| process::works(Command::new(program).arg("--version"));
-    let missing: Vec<_> = COMPILERS.into_iter().filter(|(program, _)| !here(program)).collect();
+    let missing = missing();
     if missing.is_empty() {
-        say(format_args!("    found {}", COMPILERS.map(|(program, _)| program).join(" and ")));
+        say(format_args!("    found {}", COMPILERS.map(|(program, _)| program).join(", ")));
         return Ok(());
     }
-    let packages: Vec<_> = missing.iter().map(|(_, package)| *package).collect();
-    if !apt::is_here() {
-        say(format_args!(
-            "    there is no {}: tests of exported shaders will be skipped",
-            packages.join(", no ")
-        ));
-        return Ok(());
+    if apt::is_here()
+        && let Err(cause) = apt::install(&missing)
+    {
+        if cause.is::<Interrupted>() {
+            return Err(cause);
+        }
+        say(format_args!("    {cause:#}"));
     }
-    apt::install(&packages)?;
-    match COMPILERS.into_iter().find(|(program, _)| !here(program)) {
-        None => Ok(()),
-        Some((program, package)) => bail!("{package} is installed, and {program} is still missing"),
+    let missing = self::missing();
+    if !missing.is_empty() {
+        let list = missing.join(", no ");
+        say(format_args!("    there is no {list}: the tests of exported shaders that need it cannot run"));
     }
+    Ok(())
+}
+
+/// The packages of the programs that are not here.
+fn missing() -> Vec<&'static str> {
+    let here = |program: &str| process::works(Command::new(program).arg("--version"));
+    COMPILERS.into_iter().filter(|(program, _)| !here(program)).map(|(_, package)| package).collect()
 }

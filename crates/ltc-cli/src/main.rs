@@ -46,6 +46,7 @@ enum Command {
     Export(commands::export::Export),
     Render(commands::render::Render),
     Shader(commands::shader::Shader),
+    Probe(commands::probe::Probe),
 }
 
 fn main() -> ExitCode {
@@ -63,6 +64,7 @@ fn main() -> ExitCode {
         Command::Export(command) => command.run(tables),
         Command::Render(command) => command.run(tables),
         Command::Shader(command) => command.run(),
+        Command::Probe(command) => command.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -49,6 +49,8 @@ mod light;
 #[cfg(feature = "device")]
 mod lookup;
 pub mod modules;
+#[cfg(feature = "device")]
+mod probe;
 mod request;
 #[cfg(feature = "device")]
 mod shade;
@@ -70,6 +72,8 @@ pub use integrate::{LightJob, Lights, PolygonJob, Polygons};
 pub use light::{AreaLight, LightShape};
 #[cfg(feature = "device")]
 pub use lookup::{LookupResult, Lookups};
+#[cfg(feature = "device")]
+pub use probe::{Finding, ProbeReport, Verdict, probe};
 pub use request::{Feature, LightKind, ShaderRequest, UnknownName};
 #[cfg(feature = "device")]
 pub use shade::Shader;

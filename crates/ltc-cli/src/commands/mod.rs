@@ -5,6 +5,7 @@ pub mod export;
 pub mod fit;
 pub mod integrate;
 pub mod lookup;
+pub mod probe;
 pub mod render;
 pub mod serve;
 pub mod shader;

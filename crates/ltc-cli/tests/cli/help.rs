@@ -2,7 +2,7 @@
 
 use crate::support::ltc;
 
-const VERBS: [&str; 11] = [
+const VERBS: [&str; 12] = [
     "serve",
     "fit",
     "tables",
@@ -14,6 +14,7 @@ const VERBS: [&str; 11] = [
     "export",
     "render",
     "shader",
+    "probe",
 ];
 
 #[test]

@@ -6,6 +6,7 @@ mod export;
 mod fit;
 mod help;
 mod lines;
+mod probe;
 mod render;
 #[cfg(unix)]
 mod resume;

@@ -2,8 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by a panic")]
 
+mod browser;
 mod equality;
 mod golden;
+#[path = "../../../../examples/hosts/wgsl/main.rs"]
+mod host_wgsl;
 mod support;
 mod triples;
 mod validators;

@@ -81,9 +81,9 @@ impl Triple {
     }
 }
 
-/// `count` of each kind of light.
-pub fn triples(count: usize, mut rng: impl FnMut() -> f64) -> Vec<Triple> {
-    let kinds = LightKind::ALL.iter().flat_map(|kind| std::iter::repeat_n(*kind, count));
+/// `count` of each of these kinds of light.
+pub fn triples(kinds: &[LightKind], count: usize, mut rng: impl FnMut() -> f64) -> Vec<Triple> {
+    let kinds = kinds.iter().flat_map(|kind| std::iter::repeat_n(*kind, count));
     kinds.map(|kind| Triple { m: lobe(&mut rng), light: light(kind, &mut rng) }).collect()
 }
 

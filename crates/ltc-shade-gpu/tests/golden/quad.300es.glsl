@@ -309,10 +309,10 @@ bool ltc_emits_towards(float facing, bool two_sided) {
 }
 
 // The distance of the shading point in front of the plane with this normal through `point`, times the normal's length;
-// exactly 0 where rounding decides the side: within 8 epsilon of the point's distance. Coordinates scaled to at most 1.
-float ltc_facing(vec3 normal, vec3 point) {
+// exactly 0 where rounding decides the side: within 8 epsilon of `reach`, how far what defines the plane is away.
+float ltc_facing(vec3 normal, vec3 point, float reach) {
     float facing = -(dot(normal, point));
-    return ((abs(facing) > ((9.536743e-7 * length(normal)) * length(point))) ? facing : 0.0);
+    return ((abs(facing) > ((9.536743e-7 * reach) * length(normal))) ? facing : 0.0);
 }
 
 // The boundary sum of a quad that the surface's horizon does not cut.
@@ -403,20 +403,20 @@ float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     vec3 _e38 = b;
     vec3 _e40 = ltc_cross((_e34 - _e35), (_e37 - _e38));
     vec3 _e41 = a;
-    float _e42 = ltc_facing(_e40, _e41);
-    bool _e43 = ltc_emits_towards(_e42, false);
-    if (!(_e43)) {
+    float _e43 = ltc_facing(_e40, _e41, 1.0);
+    bool _e44 = ltc_emits_towards(_e43, false);
+    if (!(_e44)) {
         return 0.0;
     }
-    vec3 _e48 = a;
-    vec3 _e49 = b;
-    vec3 _e50 = c;
-    vec3 _e51 = d;
-    float _e52 = ltc_quad_above(lobe, _e48, _e49, _e50, _e51);
-    sum = _e52;
-    float _e53 = sum;
+    vec3 _e49 = a;
+    vec3 _e50 = b;
+    vec3 _e51 = c;
+    vec3 _e52 = d;
+    float _e53 = ltc_quad_above(lobe, _e49, _e50, _e51, _e52);
+    sum = _e53;
     float _e54 = sum;
-    float _e59 = ltc_fraction_of_sum(((_e42 > 0.0) ? -(_e54) : _e53));
-    return clamp(_e59, 0.0, 1.0);
+    float _e55 = sum;
+    float _e60 = ltc_fraction_of_sum(((_e43 > 0.0) ? -(_e55) : _e54));
+    return clamp(_e60, 0.0, 1.0);
 }
 

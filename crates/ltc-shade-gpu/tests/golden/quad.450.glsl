@@ -608,10 +608,10 @@ bool ltc_emits_towards(float facing, bool two_sided) {
 }
 
 // The distance of the shading point in front of the plane with this normal through `point`, times the normal's length;
-// exactly 0 where rounding decides the side: within 8 epsilon of the point's distance. Coordinates scaled to at most 1.
-float ltc_facing(vec3 normal, vec3 point) {
+// exactly 0 where rounding decides the side: within 8 epsilon of `reach`, how far what defines the plane is away.
+float ltc_facing(vec3 normal, vec3 point, float reach) {
     float facing = -(dot(normal, point));
-    return ((abs(facing) > ((9.536743e-7 * length(normal)) * length(point))) ? facing : 0.0);
+    return ((abs(facing) > ((9.536743e-7 * reach) * length(normal))) ? facing : 0.0);
 }
 
 // The boundary sum of a quad that the surface's horizon does not cut.
@@ -713,52 +713,52 @@ float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     vec3 _e59 = b;
     vec3 _e61 = ltc_cross((_e55 - _e56), (_e58 - _e59));
     vec3 _e62 = a;
-    float _e63 = ltc_facing(_e61, _e62);
-    bool _e64 = ltc_emits_towards(_e63, false);
-    if (!(_e64)) {
+    float _e64 = ltc_facing(_e61, _e62, 1.0);
+    bool _e65 = ltc_emits_towards(_e64, false);
+    if (!(_e65)) {
         return 0.0;
     }
     if ((lowest < 0.0)) {
-        LtcBoundary _e71 = ltc_boundary();
-        boundary = _e71;
+        LtcBoundary _e72 = ltc_boundary();
+        boundary = _e72;
         bool loop_init_2 = true;
         while(true) {
             if (!loop_init_2) {
-                int _e84 = i;
-                i = (_e84 + 1);
+                int _e85 = i;
+                i = (_e85 + 1);
             }
             loop_init_2 = false;
-            int _e75 = i;
-            if ((_e75 < 4)) {
+            int _e76 = i;
+            if ((_e76 < 4)) {
             } else {
                 break;
             }
             {
-                vec3 _e78 = a;
-                ltc_boundary_push(boundary, lobe, _e78);
+                vec3 _e79 = a;
+                ltc_boundary_push(boundary, lobe, _e79);
                 vec3 moved = a;
-                vec3 _e80 = b;
-                a = _e80;
-                vec3 _e81 = c;
-                b = _e81;
-                vec3 _e82 = d;
-                c = _e82;
+                vec3 _e81 = b;
+                a = _e81;
+                vec3 _e82 = c;
+                b = _e82;
+                vec3 _e83 = d;
+                c = _e83;
                 d = moved;
             }
         }
-        float _e86 = ltc_boundary_finish(boundary, lobe);
-        sum = _e86;
+        float _e87 = ltc_boundary_finish(boundary, lobe);
+        sum = _e87;
     } else {
-        vec3 _e87 = a;
-        vec3 _e88 = b;
-        vec3 _e89 = c;
-        vec3 _e90 = d;
-        float _e91 = ltc_quad_above(lobe, _e87, _e88, _e89, _e90);
-        sum = _e91;
+        vec3 _e88 = a;
+        vec3 _e89 = b;
+        vec3 _e90 = c;
+        vec3 _e91 = d;
+        float _e92 = ltc_quad_above(lobe, _e88, _e89, _e90, _e91);
+        sum = _e92;
     }
-    float _e92 = sum;
     float _e93 = sum;
-    float _e98 = ltc_fraction_of_sum(((_e63 > 0.0) ? -(_e93) : _e92));
-    return clamp(_e98, 0.0, 1.0);
+    float _e94 = sum;
+    float _e99 = ltc_fraction_of_sum(((_e64 > 0.0) ? -(_e94) : _e93));
+    return clamp(_e99, 0.0, 1.0);
 }
 

@@ -292,10 +292,10 @@ fn ltc_emits_towards(facing: f32, two_sided: bool) -> bool {
 }
 
 // The distance of the shading point in front of the plane with this normal through `point`, times the normal's length;
-// exactly 0 where rounding decides the side: within 8 epsilon of the point's distance. Coordinates scaled to at most 1.
-fn ltc_facing(normal: vec3f, point: vec3f) -> f32 {
+// exactly 0 where rounding decides the side: within 8 epsilon of `reach`, how far what defines the plane is away.
+fn ltc_facing(normal: vec3f, point: vec3f, reach: f32) -> f32 {
     let facing = -dot(normal, point);
-    return select(0.0, facing, abs(facing) > 9.5367432e-7 * length(normal) * length(point));
+    return select(0.0, facing, abs(facing) > 9.5367432e-7 * reach * length(normal));
 }
 
 // Flat lights of four corners. No bindings. Needs: math, precise, lobe, boundary, facing.
@@ -326,7 +326,7 @@ fn ltc_quad(
     var c = v2 / scale;
     var d = v3 / scale;
     // The two terms of Newell's sum in one: the cross product of the diagonals.
-    let facing = ltc_facing(ltc_cross(c - a, d - b), a);
+    let facing = ltc_facing(ltc_cross(c - a, d - b), a, 1.0);
     if !ltc_emits_towards(facing, two_sided) {
         return 0.0;
     }
