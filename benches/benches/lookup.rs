@@ -1,21 +1,52 @@
-//! What it costs to look a material up.
+//! What it costs to look a material up, in tables of each shape, and to read a table.
 
 use std::hint::black_box;
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use ltc_fit::draw;
+use ltc_table::{Kind, Precision, TableVersion};
 
-const COUNT: usize = 1024;
+const COUNT: usize = 1000;
 
-fn benches(c: &mut Criterion) {
+fn lookups(c: &mut Criterion) {
     let tables = ltc_tables::shipped().expect("shipped tables are sound");
-    let table = tables.find("ggx-anisotropic").expect("it is shipped").table();
-    let queries = draw::standard(COUNT, 5, false);
-    let mut next = (0..COUNT).cycle();
-    c.bench_function("lookup/anisotropic/f64", |b| {
-        b.iter(|| table.lookup(black_box(&queries[next.next().unwrap_or(0)])));
-    });
+    let mut group = c.benchmark_group("lookup");
+    group.throughput(Throughput::Elements(COUNT as u64));
+    for name in ["ggx-isotropic", "ggx-anisotropic"] {
+        let table = tables.find(name).expect("it is shipped").table();
+        let queries = draw::standard(COUNT, 5, table.kind() == Kind::Isotropic);
+        for precision in [Precision::F16, Precision::F64] {
+            let table = table.rounded(precision).expect("it can be rounded");
+            let differ = |q| table.lookup(q).expect("it answers").magnitude;
+            let exact = tables.find(name).expect("it is shipped").table();
+            let error = queries
+                .iter()
+                .map(|q| (differ(q) - exact.lookup(q).expect("it answers").magnitude).abs())
+                .fold(0.0, f64::max);
+            println!("lookup/{name}/{}: magnitude off by {error:.1e} at most", precision.name());
+            group.bench_function(format!("{name}/{}", precision.name()), |b| {
+                b.iter(|| {
+                    for query in &queries {
+                        let _ = black_box(table.lookup(black_box(query)));
+                    }
+                });
+            });
+        }
+    }
 }
 
-criterion_group!(all, benches);
+fn decoding(c: &mut Criterion) {
+    let tables = ltc_tables::shipped().expect("shipped tables are sound");
+    let mut group = c.benchmark_group("decode");
+    for name in ["ggx-isotropic", "ggx-anisotropic"] {
+        let version = tables.find(name).expect("it is shipped");
+        let (manifest, payload) = (version.manifest().clone(), version.payload().to_vec());
+        group.throughput(Throughput::Bytes(payload.len() as u64));
+        group.bench_function(name, |b| {
+            b.iter(|| TableVersion::new(black_box(manifest.clone()), black_box(payload.clone())));
+        });
+    }
+}
+
+criterion_group!(all, lookups, decoding);
 criterion_main!(all);

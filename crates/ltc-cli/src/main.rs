@@ -47,6 +47,7 @@ enum Command {
     Render(commands::render::Render),
     Shader(commands::shader::Shader),
     Probe(commands::probe::Probe),
+    Bench(commands::bench::Bench),
 }
 
 fn main() -> ExitCode {
@@ -65,6 +66,7 @@ fn main() -> ExitCode {
         Command::Render(command) => command.run(tables),
         Command::Shader(command) => command.run(),
         Command::Probe(command) => command.run(),
+        Command::Bench(command) => command.run(tables),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -78,6 +78,7 @@ fn shapes() -> Vec<Shape> {
         of("12×8×8×6", &[12, 8, 8, 6]),
         of("8×8×12×6", &[8, 8, 12, 6]),
         of("10⁴", &[10, 10, 10, 10]),
+        of("24×8×8×6", &[24, 8, 8, 6]),
         of("12⁴", &[12, 12, 12, 12]),
         square("8²", 8),
         square("16²", 16),
@@ -167,6 +168,7 @@ fn draw(outcomes: &[Outcome], optima: [f64; 2]) -> String {
     text((x, y + 42.0), "middle", "#333", "KiB of a half-float texture");
     text((MARGINS[0] + 8.0, MARGINS[2] + 14.0), "start", "#333", "mean total variation");
     let right = WIDTH - MARGINS[1] - 4.0;
+    let mut leaders = Vec::new();
     for ((optimum, colour), words) in optima
         .into_iter()
         .zip(["#b33", "#36a"])
@@ -174,10 +176,18 @@ fn draw(outcomes: &[Outcome], optima: [f64; 2]) -> String {
     {
         text((right, place(1.0, optimum).1 + 16.0), "end", colour, words);
     }
-    for outcome in outcomes {
-        let (x, y) = place(outcome.kilobytes, outcome.tv);
+    for (outcome, (at, point)) in outcomes.iter().zip(label_places(outcomes)) {
         let colour = if outcome.isotropic { "#36a" } else { "#b33" };
-        text((x + 7.0, y - 6.0), "start", colour, outcome.name);
+        text(at, "start", colour, outcome.name);
+        leaders.push((at, point));
+    }
+    for ((x1, y1), (x2, y2)) in leaders {
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{:.1} {:.1}L{x2:.1} {y2:.1}\" stroke=\"#999\" stroke-width=\"0.7\"/>",
+            x1 - 2.0,
+            y1 - 4.0
+        );
     }
     for outcome in outcomes {
         let (x, y) = place(outcome.kilobytes, outcome.tv);
@@ -186,4 +196,28 @@ fn draw(outcomes: &[Outcome], optima: [f64; 2]) -> String {
     }
     svg.push_str("</svg>\n");
     svg
+}
+
+/// Where the labels start, each with its point: to the right, above or below the point, ever farther where other labels are in
+/// the way.
+fn label_places(outcomes: &[Outcome]) -> Vec<((f64, f64), (f64, f64))> {
+    const LINE: f64 = 15.0;
+    let mut taken: Vec<(f64, f64, f64)> = Vec::new();
+    let mut places = Vec::new();
+    for outcome in outcomes {
+        let point = place(outcome.kilobytes, outcome.tv);
+        let left = point.0 + 12.0;
+        let right = left + 5.0 + 7.5 * outcome.name.chars().count() as f64;
+        let is_free =
+            |y: f64| taken.iter().all(|&(l, r, at)| right < l || r < left || (at - y).abs() >= LINE);
+        // 0, 1, −1, 2, −2, … lines away.
+        let y = (0..)
+            .map(|i: i32| if i % 2 == 1 { -(i + 1) / 2 } else { i / 2 })
+            .map(|lines| point.1 + 4.0 + LINE * f64::from(lines))
+            .find(|y| is_free(*y))
+            .unwrap_or(point.1);
+        taken.push((left, right, y));
+        places.push(((left, y), point));
+    }
+    places
 }

@@ -1,11 +1,10 @@
 //! LTC shading on the GPU.
 
 use glam::{DVec3, Vec3};
-use ltc_core::Sides;
 use ltc_shade_gpu::{AreaLight, Gpu, GpuOptions, LightShape, Shader, TableTextures, Tables};
 
+use crate::emitter::Emitter;
 use crate::gbuffer::SurfacePoint;
-use crate::light::Emitter;
 use crate::shader::Shade;
 use crate::{RenderError, RenderTables};
 
@@ -49,11 +48,7 @@ impl Shade for GpuBackend {
 }
 
 fn light(emitter: &Emitter) -> AreaLight {
-    let sides = if emitter.two_sided { Sides::Two } else { Sides::One };
-    AreaLight {
-        shape: LightShape::Quad { corners: emitter.corners.map(DVec3::as_vec3), sides },
-        radiance: emitter.radiance.as_vec3(),
-    }
+    AreaLight { shape: LightShape::from(&emitter.light), radiance: emitter.radiance.as_vec3() }
 }
 
 fn surface_point(point: &SurfacePoint) -> ltc_shade_gpu::SurfacePoint {

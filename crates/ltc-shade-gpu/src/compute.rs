@@ -156,7 +156,7 @@ pub(crate) fn read_floats(gpu: &Gpu, source: &Buffer) -> Result<Vec<f32>, GpuErr
     Ok(read_back(gpu, source)?.into_iter().map(f32::from_bits).collect())
 }
 
-fn read_back(gpu: &Gpu, source: &Buffer) -> Result<Vec<u32>, GpuError> {
+pub(crate) fn read_back(gpu: &Gpu, source: &Buffer) -> Result<Vec<u32>, GpuError> {
     let device = gpu.device();
     let staging = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("ltc read-back"),

@@ -8,6 +8,17 @@ use wgpu::{
 
 use crate::{Filtering, GpuError};
 
+/// The numbers of a table on the device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Texels {
+    /// 32 bits. Filtering them takes `FLOAT32_FILTERABLE`.
+    #[default]
+    F32,
+    /// 16 bits: half the memory and traffic, filtered by every device, with eleven bits of each entry (`docs/gpu.md` has
+    /// what that costs).
+    F16,
+}
+
 /// How to choose and use a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GpuOptions {
@@ -15,6 +26,8 @@ pub struct GpuOptions {
     pub software_only: bool,
     /// How tables are interpolated.
     pub filtering: Filtering,
+    /// The numbers of tables.
+    pub texels: Texels,
     /// The one back end to look at, as in `WGPU_BACKEND`, which is not asked then.
     pub backend: Option<&'static str>,
 }
@@ -47,6 +60,7 @@ pub struct Gpu {
     queue: wgpu::Queue,
     info: GpuInfo,
     filtering: Filtering,
+    texels: Texels,
 }
 
 impl Gpu {
@@ -86,7 +100,8 @@ impl Gpu {
             return Err(GpuError::device("it has no compute shaders"));
         }
         let filterable = adapter.features() & Features::FLOAT32_FILTERABLE;
-        if options.filtering == Filtering::Hardware && filterable.is_empty() {
+        let filters_f32 = options.filtering == Filtering::Hardware && options.texels == Texels::F32;
+        if filters_f32 && filterable.is_empty() {
             return Err(GpuError::NotFilterable { device: info.to_string() });
         }
         let descriptor = wgpu::DeviceDescriptor {
@@ -97,7 +112,7 @@ impl Gpu {
         };
         let (device, queue) =
             pollster::block_on(adapter.request_device(&descriptor)).map_err(GpuError::device)?;
-        Ok(Self { device, queue, info, filtering: options.filtering })
+        Ok(Self { device, queue, info, filtering: options.filtering, texels: options.texels })
     }
 
     /// Name, back end and driver.
@@ -108,6 +123,11 @@ impl Gpu {
     /// How tables are interpolated.
     pub fn filtering(&self) -> Filtering {
         self.filtering
+    }
+
+    /// The numbers of tables.
+    pub fn texels(&self) -> Texels {
+        self.texels
     }
 
     pub(crate) fn device(&self) -> &wgpu::Device {

@@ -7,6 +7,8 @@ pub enum Filtering {
     #[default]
     Exact,
     /// By the texture unit, which rounds weights to about 8 bits on hardware. Fewer fetches: 3 instead of 12 for the
-    /// isotropic table, 6 instead of 48 for the anisotropic. Needs `FLOAT32_FILTERABLE`.
+    /// isotropic table, 6 instead of 48 for the anisotropic. Needs `FLOAT32_FILTERABLE` for 32-bit texels.
     Hardware,
+    /// By the shader, in full `f32`, out of a storage buffer: for devices without float textures.
+    Buffer,
 }

@@ -91,7 +91,24 @@ pub(crate) struct LightLayout {
     pub bits: u32,
 }
 
+/// `ForwardUniform`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct ForwardLayout {
+    pub clip_from_world: [[f32; 4]; 4],
+    pub eye: [f32; 3],
+    pub light_count: u32,
+    pub f0: [f32; 3],
+    pub f90: f32,
+    pub albedo: [f32; 3],
+    pub isotropic: u32,
+    pub alpha_x: f32,
+    pub alpha_y: f32,
+    pub unused: [u32; 2],
+}
+
 const _: () = {
+    assert!(size_of::<ForwardLayout>() == 128);
     assert!(size_of::<AxesUniform>() == 64);
     assert!(size_of::<IntegrateLayout>() == 128);
     assert!(size_of::<LookupLayout>() == 32);

@@ -2,7 +2,7 @@
 //! deferred shading.
 //!
 //! [`Gpu`] opens a device: hardware where there is one, a software driver otherwise. [`TableTextures`] holds a table there.
-//! [`Lookups`], [`Lights`] and [`Shader`] are compute pipelines over it. Conventions and units are those of
+//! [`Lookups`], [`Lights`] and [`Shader`] are compute pipelines over it, [`Forward`] shades triangles as they are drawn. Conventions and units are those of
 //! [`ltc_core`]; everything on the device is `f32`.
 //!
 //! The WGSL comes in [`modules`]: pure functions that know no bindings, and thin entry points that hold them. A program is
@@ -41,6 +41,10 @@ mod error;
 mod export;
 mod filtering;
 #[cfg(feature = "device")]
+mod forward;
+#[cfg(all(test, feature = "device"))]
+mod function_tests;
+#[cfg(feature = "device")]
 mod integrate;
 #[cfg(feature = "device")]
 mod layout;
@@ -60,12 +64,14 @@ mod surface;
 mod table_textures;
 
 #[cfg(feature = "device")]
-pub use device::{Gpu, GpuInfo, GpuOptions};
+pub use device::{Gpu, GpuInfo, GpuOptions, Texels};
 #[cfg(feature = "device")]
 pub use error::GpuError;
 #[cfg(feature = "export")]
 pub use export::{Code, ExportError, Exported, Language};
 pub use filtering::Filtering;
+#[cfg(feature = "device")]
+pub use forward::{Forward, ForwardMaterial, ForwardVertex, ForwardView};
 #[cfg(feature = "device")]
 pub use integrate::{LightJob, Lights, PolygonJob, Polygons};
 #[cfg(feature = "device")]

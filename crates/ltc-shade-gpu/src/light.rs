@@ -1,5 +1,6 @@
 //! Lights of every shape, as the device reads them.
 
+use bytemuck::Zeroable;
 use glam::Vec3;
 use ltc_core::{
     AnyLight, Cylinder, Disk, Ellipse, Horizon, InputError, Light as _, LineCylinder, Ltc, Polygon, Quad,
@@ -34,13 +35,14 @@ pub enum LightShape {
 }
 
 impl From<&AnyLight> for LightShape {
-    /// Rounded to `f32`.
+    /// Rounded to `f32`; a polygon of four vertices is a quad.
     fn from(light: &AnyLight) -> Self {
         let v = |p: &[f64; 3]| Vec3::from_array(p.map(|x| x as f32));
         match light {
-            AnyLight::Polygon { vertices, sides } => {
-                Self::Polygon { vertices: vertices.iter().map(v).collect(), sides: *sides }
-            }
+            AnyLight::Polygon { vertices, sides } => match vertices.as_slice() {
+                [a, b, c, d] => Self::Quad { corners: [a, b, c, d].map(v), sides: *sides },
+                _ => Self::Polygon { vertices: vertices.iter().map(v).collect(), sides: *sides },
+            },
             AnyLight::Line { p0, p1, radius } => {
                 Self::Line { p0: v(p0), p1: v(p1), radius: *radius as f32, caps: false }
             }
@@ -222,5 +224,28 @@ impl AreaLight {
             check_range("radiance", f64::from(channel), 0.0, f64::from(f32::MAX) / 4.0)?;
         }
         Ok(())
+    }
+}
+
+/// Lights as the shaders read them.
+pub(crate) struct EncodedLights {
+    pub records: Vec<LightLayout>,
+    /// Of all polygons.
+    pub vertices: Vec<[f32; 4]>,
+}
+
+impl EncodedLights {
+    /// Neither buffer is empty, as none can be: counts say what is in them.
+    pub fn of(lights: &[AreaLight]) -> Result<Self, GpuError> {
+        let mut vertices = Vec::new();
+        let records = lights.iter().enumerate().map(|(i, light)| light.encode(i, &mut vertices));
+        let mut records = records.collect::<Result<Vec<_>, _>>()?;
+        if records.is_empty() {
+            records.push(LightLayout::zeroed());
+        }
+        if vertices.is_empty() {
+            vertices.push([0.0; 4]);
+        }
+        Ok(Self { records, vertices })
     }
 }

@@ -65,6 +65,9 @@ pub const MODULES: &[Module] = &[
     module!(true, "fetch_exact_anisotropic", ["anisotropic"]),
     module!(true, "fetch_hardware_isotropic", ["isotropic"]),
     module!(true, "fetch_hardware_anisotropic", ["anisotropic"]),
+    module!(true, "fetch_function_isotropic", ["isotropic"]),
+    module!(true, "fetch_function_anisotropic", ["anisotropic"]),
+    module!(false, "tables_buffer", ["fetch_function_isotropic", "fetch_function_anisotropic"]),
     module!(false, "tables_exact", ["fetch_exact_isotropic", "fetch_exact_anisotropic"]),
     module!(false, "tables_hardware", ["fetch_hardware_isotropic", "fetch_hardware_anisotropic"]),
     module!(
@@ -85,7 +88,9 @@ pub const MODULES: &[Module] = &[
     ),
     module!(false, "integrate_main", ["lights"]),
     module!(false, "lookup_main", ["table"]),
-    module!(false, "shade_main", ["lights", "fresnel", "table"]),
+    module!(false, "shade", ["lights", "fresnel", "table"]),
+    module!(false, "shade_main", ["shade"]),
+    module!(false, "forward_main", ["shade"]),
 ];
 
 /// What the programs of this crate are composed with.
@@ -100,26 +105,38 @@ pub enum Program {
     Lookup(Filtering),
     /// Deferred shading: entry point `main`.
     Shade(Filtering),
+    /// Forward shading: entry points `vertex_main` and `fragment_main`.
+    Forward(Filtering),
 }
 
 impl Program {
     /// Every program there is.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 10] = [
         Self::Integrate,
         Self::Lookup(Filtering::Exact),
         Self::Lookup(Filtering::Hardware),
         Self::Shade(Filtering::Exact),
         Self::Shade(Filtering::Hardware),
+        Self::Forward(Filtering::Exact),
+        Self::Forward(Filtering::Hardware),
+        Self::Lookup(Filtering::Buffer),
+        Self::Shade(Filtering::Buffer),
+        Self::Forward(Filtering::Buffer),
     ];
 
     /// The modules to begin with; the rest follows from what they need.
     pub fn roots(self) -> &'static [&'static str] {
         match self {
             Self::Integrate => &["integrate_main"],
+            Self::Lookup(Filtering::Buffer) => &["tables_buffer", "lookup_main"],
+            Self::Shade(Filtering::Buffer) => &["tables_buffer", "shade_main"],
+            Self::Forward(Filtering::Buffer) => &["tables_buffer", "forward_main"],
             Self::Lookup(Filtering::Exact) => &["tables_exact", "lookup_main"],
             Self::Lookup(Filtering::Hardware) => &["tables_hardware", "lookup_main"],
             Self::Shade(Filtering::Exact) => &["tables_exact", "shade_main"],
             Self::Shade(Filtering::Hardware) => &["tables_hardware", "shade_main"],
+            Self::Forward(Filtering::Exact) => &["tables_exact", "forward_main"],
+            Self::Forward(Filtering::Hardware) => &["tables_hardware", "forward_main"],
         }
     }
 
@@ -220,12 +237,19 @@ mod tests {
         for program in Program::ALL {
             let module = validate(&program.source()).unwrap_or_else(|e| panic!("{program:?}: {e}"));
             let names: Vec<_> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
-            assert_eq!(names, ["main"], "{program:?}");
+            let forward = matches!(program, Program::Forward(_));
+            let expected = if forward { vec!["vertex_main", "fragment_main"] } else { vec!["main"] };
+            assert_eq!(names, expected, "{program:?}");
         }
     }
 
+    /// What a host brings where a table comes out of a function.
+    const HOST: &str = "
+        fn ltc_isotropic_texel(entry: u32, group: u32) -> vec4f { return vec4f(f32(entry), f32(group), 0.0, 0.0); }
+        fn ltc_anisotropic_texel(entry: u32, group: u32) -> vec4f { return vec4f(f32(entry), f32(group), 0.0, 0.0); }";
+
     fn assert_pure(source: &str, what: &str) {
-        let ir = validate(source).unwrap_or_else(|e| panic!("{what}: {e}"));
+        let ir = validate(&format!("{source}{HOST}")).unwrap_or_else(|e| panic!("{what}: {e}"));
         assert!(ir.entry_points.is_empty() && ir.global_variables.is_empty(), "{what}");
         for (_, function) in ir.functions.iter() {
             assert!(function.name.as_ref().is_some_and(|n| n.starts_with("ltc_")), "{function:?}");

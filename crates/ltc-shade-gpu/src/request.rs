@@ -74,8 +74,12 @@ pub enum Feature {
     Isotropic,
     /// Lookup in a table for anisotropic materials.
     Anisotropic,
-    /// Lookups by the texture unit, in fewer fetches and to its precision; without, by the shader in full.
+    /// Lookups by the texture unit, in fewer fetches and to its precision; without, by the shader in full. Of no effect with
+    /// [`Feature::FunctionTables`].
     HardwareFiltering,
+    /// Lookups call `ltc_isotropic_texel` or `ltc_anisotropic_texel`, which the host defines: over a storage buffer or
+    /// whatever else holds a table where there are no float textures.
+    FunctionTables,
     /// Lights are cut by the surface's horizon. Without, those below it leak into tilted lobes.
     SurfaceHorizon,
     /// Lights are cut by the horizon of cosine space. Without, what lies below it counts negatively.
@@ -96,10 +100,11 @@ pub enum Feature {
 
 impl Feature {
     /// Every feature there is.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Isotropic,
         Self::Anisotropic,
         Self::HardwareFiltering,
+        Self::FunctionTables,
         Self::SurfaceHorizon,
         Self::CosineHorizon,
         Self::TwoSided,
@@ -116,6 +121,7 @@ impl Feature {
             Self::Isotropic => "isotropic",
             Self::Anisotropic => "anisotropic",
             Self::HardwareFiltering => "hardware-filtering",
+            Self::FunctionTables => "function-tables",
             Self::SurfaceHorizon => "surface-horizon",
             Self::CosineHorizon => "cosine-horizon",
             Self::TwoSided => "two-sided",
@@ -135,6 +141,7 @@ impl Feature {
             Self::Isotropic => "lookup in a table for isotropic materials",
             Self::Anisotropic => "lookup in a table for anisotropic materials",
             Self::HardwareFiltering => "lookups by the texture unit, faster and to its precision",
+            Self::FunctionTables => "lookups call a function of yours for each texel, over any memory",
             Self::SurfaceHorizon => "cuts lights at the surface's horizon: nothing leaks from below",
             Self::CosineHorizon => "cuts lights at the horizon of cosine space",
             Self::TwoSided => "flat lights take a parameter that says whether their back emits",
@@ -235,13 +242,23 @@ impl ShaderRequest {
     /// The modules to begin with.
     pub(crate) fn roots(&self) -> Vec<&'static str> {
         let mut roots = Vec::new();
-        let hardware = self.has(Feature::HardwareFiltering);
-        for (feature, exact, filtered) in [
-            (Feature::Isotropic, "fetch_exact_isotropic", "fetch_hardware_isotropic"),
-            (Feature::Anisotropic, "fetch_exact_anisotropic", "fetch_hardware_anisotropic"),
+        let way = match (self.has(Feature::FunctionTables), self.has(Feature::HardwareFiltering)) {
+            (true, _) => 2,
+            (false, true) => 1,
+            (false, false) => 0,
+        };
+        for (feature, fetches) in [
+            (
+                Feature::Isotropic,
+                ["fetch_exact_isotropic", "fetch_hardware_isotropic", "fetch_function_isotropic"],
+            ),
+            (
+                Feature::Anisotropic,
+                ["fetch_exact_anisotropic", "fetch_hardware_anisotropic", "fetch_function_anisotropic"],
+            ),
         ] {
             if self.has(feature) {
-                roots.push(if hardware { filtered } else { exact });
+                roots.push(fetches[way]);
             }
         }
         for (feature, module) in [
@@ -294,7 +311,9 @@ impl ShaderRequest {
             [&[Feature::Isotropic][..], &[Feature::Anisotropic], &[Feature::Isotropic, Feature::Anisotropic]]
         {
             list.push(Self::new([], tables.iter().copied()));
-            list.push(Self::new([], tables.iter().copied().chain([Feature::HardwareFiltering])));
+            for way in [Feature::HardwareFiltering, Feature::FunctionTables] {
+                list.push(Self::new([], tables.iter().copied().chain([way])));
+            }
         }
         list.extend(
             [Feature::Textured, Feature::Fresnel, Feature::Material, Feature::Frame]

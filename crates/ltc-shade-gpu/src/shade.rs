@@ -1,10 +1,9 @@
 //! Deferred shading.
 
-use bytemuck::Zeroable;
 use wgpu::BindGroupLayout;
 
 use crate::compute::{Batch, Kernel, compile};
-use crate::layout::LightLayout;
+use crate::light::EncodedLights;
 use crate::modules::Program;
 use crate::table_textures::{bind_group, bind_group_layout};
 use crate::{AreaLight, Gpu, GpuError, SurfacePoint, Tables};
@@ -47,21 +46,9 @@ impl Shader {
         points: &[SurfacePoint],
         lights: &[AreaLight],
     ) -> Result<Vec<[f32; 3]>, GpuError> {
-        let mut vertices = Vec::new();
-        let mut light_buffer = lights
-            .iter()
-            .enumerate()
-            .map(|(i, light)| light.encode(i, &mut vertices))
-            .collect::<Result<Vec<_>, _>>()?;
+        let EncodedLights { records: light_buffer, vertices } = EncodedLights::of(lights)?;
         let point_buffer =
             points.iter().enumerate().map(|(i, p)| p.encode(i, tables)).collect::<Result<Vec<_>, _>>()?;
-        if lights.is_empty() {
-            // A buffer cannot be empty; the count says that there is no light in it.
-            light_buffer.push(LightLayout::zeroed());
-        }
-        if vertices.is_empty() {
-            vertices.push([0.0_f32; 4]);
-        }
         let bound = bind_group(gpu, &self.tables, tables)?;
         let mut radiance = Vec::with_capacity(points.len());
         for chunk in point_buffer.chunks(CHUNK) {

@@ -1,5 +1,6 @@
 //! One file for each verb.
 
+pub mod bench;
 pub mod diff;
 pub mod export;
 pub mod fit;

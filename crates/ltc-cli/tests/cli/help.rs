@@ -2,7 +2,7 @@
 
 use crate::support::ltc;
 
-const VERBS: [&str; 12] = [
+const VERBS: [&str; 13] = [
     "serve",
     "fit",
     "tables",
@@ -15,6 +15,7 @@ const VERBS: [&str; 12] = [
     "render",
     "shader",
     "probe",
+    "bench",
 ];
 
 #[test]

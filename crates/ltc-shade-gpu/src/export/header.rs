@@ -154,11 +154,13 @@ fn usage(request: &ShaderRequest, language: Language) -> Vec<String> {
     let table = if request.has(Feature::Anisotropic) { "anisotropic" } else { "isotropic" };
     let alphas = if request.has(Feature::Anisotropic) { "alpha_x, alpha_y" } else { "alpha" };
     if request.has(Feature::Isotropic) || request.has(Feature::Anisotropic) {
-        let sampled = request.has(Feature::HardwareFiltering);
+        let by_function = request.has(Feature::FunctionTables);
+        let sampled = request.has(Feature::HardwareFiltering) && !by_function;
         // GLSL's textures come with their sampler.
         let separate = sampled && !matches!(language, Language::Glsl | Language::GlslEs);
         let sampler = if separate { "sampler, " } else { "" };
-        lines.push(format!("  found = ltc_lookup_{table}(texture, {sampler}axes, wo, {alphas})"));
+        let texture = if by_function { "" } else { "texture, " };
+        lines.push(format!("  found = ltc_lookup_{table}({texture}{sampler}axes, wo, {alphas})"));
         lines.push("  lobe = ltc_lobe(found.m), and ltc_cosine() for diffuse light".to_owned());
         lines.push("and for each of its lights:".to_owned());
         lines.push("  radiance * (F0 * found.magnitude + (F90 - F0) * found.fresnel) * fraction".to_owned());
@@ -220,12 +222,18 @@ fn kernels(request: &ShaderRequest) -> Vec<String> {
             "Lookups, set 1: binding 0 uniform uvec4 (x: number of queries); 1 storage, queries; 2 storage, three vec4 for each".to_owned(),
             "query as in a table's texels, written. A query: 32 bytes, vec3 wo, alpha_x, alpha_y, three words unused.".to_owned(),
         ]);
-        if request.has(Feature::HardwareFiltering) {
+        let by_function = request.has(Feature::FunctionTables);
+        if request.has(Feature::HardwareFiltering) && !by_function {
             lines.push("Binding 7 is a linear sampler.".to_owned());
         }
         for (feature, binding, texture) in kinds.into_iter().filter(|kind| request.has(kind.0)) {
+            let texture = if by_function {
+                "storage, the groups one after the other".to_owned()
+            } else {
+                format!("texture ({texture})")
+            };
             lines.push(format!(
-                "  ltc_{feature}_batch: binding {binding} uniform LtcAxes, {} texture ({texture})",
+                "  ltc_{feature}_batch: binding {binding} uniform LtcAxes, {} {texture}",
                 binding + 1
             ));
         }

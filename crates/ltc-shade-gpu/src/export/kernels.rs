@@ -124,7 +124,8 @@ fn call(light: LightKind) -> (&'static str, bool) {
 }
 
 fn lookups(request: &ShaderRequest, text: &mut String) {
-    let hardware = request.has(Feature::HardwareFiltering);
+    let by_function = request.has(Feature::FunctionTables);
+    let hardware = request.has(Feature::HardwareFiltering) && !by_function;
     let mut started = false;
     for (feature, texture, first_binding, alphas) in [
         (Feature::Isotropic, "texture_2d_array<f32>", 3, "query.alpha_x"),
@@ -140,21 +141,31 @@ fn lookups(request: &ShaderRequest, text: &mut String) {
             }
             started = true;
         }
-        let filter = if hardware { "table_filter, " } else { "" };
         let second_binding = first_binding + 1;
+        let table = match (by_function, hardware) {
+            (true, _) => String::new(),
+            (false, true) => format!("{feature}_table, table_filter, "),
+            (false, false) => format!("{feature}_table, "),
+        };
         // Writing to a String never fails.
-        let _ = write!(
-            text,
-            "\n@group(1) @binding({first_binding}) var<uniform> {feature}_axes: LtcAxes;\n\
-             @group(1) @binding({second_binding}) var {feature}_table: {texture};\n"
-        );
+        let _ = write!(text, "\n@group(1) @binding({first_binding}) var<uniform> {feature}_axes: LtcAxes;\n");
+        let _ = if by_function {
+            write!(
+                text,
+                "@group(1) @binding({second_binding}) var<storage, read> {feature}_table: array<vec4f>;\n\n\
+                 fn ltc_{feature}_texel(entry: u32, group: u32) -> vec4f {{\n    \
+                 return {feature}_table[group * (arrayLength(&{feature}_table) / 3u) + entry];\n}}\n"
+            )
+        } else {
+            writeln!(text, "@group(1) @binding({second_binding}) var {feature}_table: {texture};")
+        };
         kernel(
             text,
             feature.name(),
             "query_count",
             &format!(
                 "    let query = queries[id.x];\n    \
-                 ltc_write(id.x, ltc_lookup_{feature}({feature}_table, {filter}{feature}_axes, query.wo, {alphas}));\n"
+                 ltc_write(id.x, ltc_lookup_{feature}({table}{feature}_axes, query.wo, {alphas}));\n"
             ),
         );
     }

@@ -22,7 +22,23 @@ pub fn text(language: Language, module: &Module, info: &ModuleInfo) -> Result<St
         Language::Msl => msl_text(module, info)?,
         Language::Wgsl | Language::Spirv => return Err("it is no text of naga's".to_owned()),
     };
-    Ok(readable(&raw, module))
+    Ok(readable(&declared(&raw), module))
+}
+
+/// The text with the host's functions declared instead of defined.
+fn declared(raw: &str) -> String {
+    let mut text = raw.to_owned();
+    for name in super::HOST_FUNCTIONS {
+        let heads = ["vec4", "float4", "metal::float4"].map(|ty| format!("\n{ty} {name}("));
+        let Some(start) = heads.iter().find_map(|head| text.find(head.as_str())) else { continue };
+        let body = text[start..].find('{').map(|at| start + at);
+        let end = text[start..].find("\n}").map(|at| start + at + 2);
+        if let (Some(body), Some(end)) = (body, end) {
+            let head = text[..body].trim_end().len();
+            text.replace_range(head..end, ";");
+        }
+    }
+    text
 }
 
 /// GLSL's back end writes programs alone: `module` holds [`STUB`], whose `main` is cut off.

@@ -161,9 +161,9 @@ mod tests {
         }
     }
 
-    fn off(report: &ProbeReport) -> Vec<&str> {
-        let findings = report.findings.iter().filter(|f| f.verdict == Verdict::Off);
-        findings.map(|f| f.feature.as_str()).collect()
+    fn off(findings: &[Finding]) -> Vec<&str> {
+        let off = findings.iter().filter(|f| f.verdict == Verdict::Off);
+        off.map(|f| f.feature.as_str()).collect()
     }
 
     #[test]
@@ -171,26 +171,27 @@ mod tests {
         let Some(gpu) = gpu() else { return };
         let report = probe(&gpu).unwrap();
         println!("{report}");
-        assert_eq!(off(&report), [""; 0], "{report}");
-        assert!(report.findings.len() >= 14, "{report}");
+        assert_eq!(off(&report.findings), [""; 0], "{report}");
+        assert!(report.is_good() && report.findings.len() >= 15, "{report}");
         let plant = |text: &str, from: &str, to: &str| {
             assert!(text.contains(from), "{from} is gone");
             text.replace(from, to)
         };
         // The controls, one for each kind of question.
-        let mut planted = Sources::own();
-        planted.arithmetic = plant(&planted.arithmetic, "-0.33332949", "-0.33432949");
-        assert_eq!(off(&examine(&gpu, &planted).unwrap()), ["arc tangent"]);
-        let mut planted = Sources::own();
-        planted.arithmetic = plant(&planted.arithmetic, "if !(x == x)", "if x == x");
-        assert_eq!(off(&examine(&gpu, &planted).unwrap()), ["NaN"]);
-        let mut planted = Sources::own();
-        planted.derivatives = plant(&planted.derivatives, "dpdy(5.0", "dpdy(5.1");
-        assert_eq!(off(&examine(&gpu, &planted).unwrap()), ["derivatives"]);
-        let mut planted = Sources::own();
-        planted.integrate = plant(&planted.integrate, "LTC_PI: f32 = 3.1415927", "LTC_PI: f32 = 3.15");
-        let report = examine(&gpu, &planted).unwrap();
-        assert!(off(&report).contains(&"light quad") && !off(&report).contains(&"arc tangent"), "{report}");
+        let own = Sources::own();
+        let planted = plant(&own.arithmetic, "-0.33332949", "-0.33432949");
+        assert_eq!(off(&arithmetic::findings(&gpu, &planted).unwrap()), ["arc tangent"]);
+        let planted = plant(&own.arithmetic, "if !(x == x)", "if x == x");
+        assert_eq!(off(&arithmetic::findings(&gpu, &planted).unwrap()), ["NaN"]);
+        let planted = plant(&own.arithmetic, "probe_input[id.x].x, 0.5)", "probe_input[id.x].x + 0.01, 0.5)");
+        let filtering = textures::findings(&gpu, &planted).unwrap();
+        assert!(filtering.len() == 1 || off(&filtering) == ["filtering precision"], "{filtering:?}");
+        let planted = plant(&own.derivatives, "dpdy(5.0", "dpdy(5.1");
+        assert_eq!(derivatives::finding(&gpu, &planted).unwrap().verdict, Verdict::Off);
+        let planted = plant(&own.integrate, "LTC_PI: f32 = 3.1415927", "LTC_PI: f32 = 3.15");
+        let lights = examine(&gpu, &Sources { integrate: planted, ..own }).unwrap();
+        assert!(off(&lights.findings).contains(&"light quad") && !lights.is_good(), "{lights}");
+        assert!(!off(&lights.findings).contains(&"arc tangent"), "{lights}");
     }
 
     #[test]

@@ -1,7 +1,13 @@
 // Products whose leading digits cancel. No bindings.
 //
-// The twelve leading digits of a factor are split off by a mask, so that products of leading parts are exact whatever a
-// compiler fuses or reorders: no rounding is relied upon.
+// The twelve leading digits of a factor are split off by a mask, so that products of leading parts are exact and nothing hangs
+// on how a sum is rounded. But compilers put parts together again where algebra allows: Mesa's turns a b + a c into a (b + c).
+// What is exact goes through `ltc_apart` before it meets the rest.
+
+// The same, in a way that algebra does not see through. For magnitudes up to 1e30.
+fn ltc_apart(v: vec3f) -> vec3f {
+    return max(v, vec3f(-1e30));
+}
 
 fn ltc_leading(v: vec3f) -> vec3f {
     return bitcast<vec3f>(bitcast<vec3u>(v) & vec3u(0xfffff000u));
@@ -18,7 +24,7 @@ fn ltc_product_differences(a: vec3f, b: vec3f, c: vec3f, d: vec3f) -> vec3f {
     let c_low = c - c_high;
     let d_low = d - d_high;
     let middle = (a_high * b_low - c_high * d_low) + (a_low * b_high - c_low * d_high);
-    return (a_high * b_high - c_high * d_high) + (middle + (a_low * b_low - c_low * d_low));
+    return ltc_apart(a_high * b_high - c_high * d_high) + (middle + (a_low * b_low - c_low * d_low));
 }
 
 // The cross product, each component to its own last digits where they do not cancel by more than 2^12.
@@ -44,13 +50,15 @@ fn ltc_split(v: vec3f) -> LtcSplit {
 }
 
 fn ltc_split_sum(large: vec3f, small: vec3f) -> LtcSplit {
-    let whole = ltc_whole(large + small);
-    return LtcSplit(whole, (large - whole) + small);
+    let exact = ltc_apart(large);
+    let whole = ltc_whole(exact + small);
+    return LtcSplit(whole, (exact - whole) + small);
 }
 
 // |a|^2 - |b|^2 to some 2^-33, coordinates and lengths up to about 1.
 fn ltc_difference_of_squares(a: LtcSplit, b: LtcSplit) -> f32 {
     let middle = dot(a.whole, a.rest) - dot(b.whole, b.rest);
     let small = dot(a.rest, a.rest) - dot(b.rest, b.rest);
-    return (dot(a.whole, a.whole) - dot(b.whole, b.whole)) + (2.0 * middle + small);
+    let exact = ltc_apart(vec3f(dot(a.whole, a.whole) - dot(b.whole, b.whole)));
+    return exact.x + (2.0 * middle + small);
 }

@@ -115,6 +115,12 @@ float ltc_floor_power_of_two(float x)
     return asfloat((asuint(x) & 2139095040u));
 }
 
+// The same, in a way that algebra does not see through. For magnitudes up to 1e30.
+float3 ltc_apart(float3 v)
+{
+    return max(v, (-1e30).xxx);
+}
+
 float3 ltc_leading(float3 v)
 {
     return asfloat((asuint(v) & (4294963200u).xxx));
@@ -132,7 +138,8 @@ float3 ltc_product_differences(float3 a, float3 b, float3 c, float3 d)
     float3 c_low = (c - _e6);
     float3 d_low = (d - _e7);
     float3 middle = (((_e4 * b_low) - (_e6 * d_low)) + ((a_low * _e5) - (c_low * _e7)));
-    return (((_e4 * _e5) - (_e6 * _e7)) + (middle + ((a_low * b_low) - (c_low * d_low))));
+    const float3 _e22 = ltc_apart(((_e4 * _e5) - (_e6 * _e7)));
+    return (_e22 + (middle + ((a_low * b_low) - (c_low * d_low))));
 }
 
 // The cross product, each component to its own last digits where they do not cancel by more than 2^12.
@@ -165,8 +172,9 @@ LtcSplit ltc_split(float3 v)
 
 LtcSplit ltc_split_sum(float3 large, float3 small)
 {
-    const float3 _e3 = ltc_whole((large + small));
-    const LtcSplit ltcsplit_1 = ConstructLtcSplit(_e3, ((large - _e3) + small));
+    const float3 _e2 = ltc_apart(large);
+    const float3 _e4 = ltc_whole((_e2 + small));
+    const LtcSplit ltcsplit_1 = ConstructLtcSplit(_e4, ((_e2 - _e4) + small));
     return ltcsplit_1;
 }
 
@@ -175,7 +183,8 @@ float ltc_difference_of_squares(LtcSplit a, LtcSplit b)
 {
     float middle = (dot(a.whole, a.rest) - dot(b.whole, b.rest));
     float small = (dot(a.rest, a.rest) - dot(b.rest, b.rest));
-    return ((dot(a.whole, a.whole) - dot(b.whole, b.whole)) + ((2.0 * middle) + small));
+    const float3 _e24 = ltc_apart(((dot(a.whole, a.whole) - dot(b.whole, b.whole))).xxx);
+    return (_e24.x + ((2.0 * middle) + small));
 }
 
 float ltc_largest_entry(float3x3 m)

@@ -113,6 +113,13 @@ float ltc_floor_power_of_two(
     return as_type<float>(as_type<uint>(x) & 2139095040u);
 }
 
+// The same, in a way that algebra does not see through. For magnitudes up to 1e30.
+metal::float3 ltc_apart(
+    metal::float3 v
+) {
+    return metal::max(v, metal::float3(-1000000000000000000000000000000.0));
+}
+
 metal::float3 ltc_leading(
     metal::float3 v
 ) {
@@ -135,7 +142,8 @@ metal::float3 ltc_product_differences(
     metal::float3 c_low = c - _e6;
     metal::float3 d_low = d - _e7;
     metal::float3 middle = ((_e4 * b_low) - (_e6 * d_low)) + ((a_low * _e5) - (c_low * _e7));
-    return ((_e4 * _e5) - (_e6 * _e7)) + (middle + ((a_low * b_low) - (c_low * d_low)));
+    metal::float3 _e22 = ltc_apart((_e4 * _e5) - (_e6 * _e7));
+    return _e22 + (middle + ((a_low * b_low) - (c_low * d_low)));
 }
 
 // The cross product, each component to its own last digits where they do not cancel by more than 2^12.
@@ -166,8 +174,9 @@ LtcSplit ltc_split_sum(
     metal::float3 large,
     metal::float3 small
 ) {
-    metal::float3 _e3 = ltc_whole(large + small);
-    return LtcSplit {_e3, (large - _e3) + small};
+    metal::float3 _e2 = ltc_apart(large);
+    metal::float3 _e4 = ltc_whole(_e2 + small);
+    return LtcSplit {_e4, (_e2 - _e4) + small};
 }
 
 // |a|^2 - |b|^2 to some 2^-33, coordinates and lengths up to about 1.
@@ -177,7 +186,8 @@ float ltc_difference_of_squares(
 ) {
     float middle = metal::dot(a.whole, a.rest) - metal::dot(b.whole, b.rest);
     float small = metal::dot(a.rest, a.rest) - metal::dot(b.rest, b.rest);
-    return (metal::dot(a.whole, a.whole) - metal::dot(b.whole, b.whole)) + ((2.0 * middle) + small);
+    metal::float3 _e24 = ltc_apart(metal::float3(metal::dot(a.whole, a.whole) - metal::dot(b.whole, b.whole)));
+    return _e24.x + ((2.0 * middle) + small);
 }
 
 float ltc_largest_entry(

@@ -99,6 +99,11 @@ float ltc_floor_power_of_two(float x) {
     return uintBitsToFloat((floatBitsToUint(x) & 2139095040u));
 }
 
+// The same, in a way that algebra does not see through. For magnitudes up to 1e30.
+vec3 ltc_apart(vec3 v) {
+    return max(v, vec3(-1e30));
+}
+
 vec3 ltc_leading(vec3 v) {
     return uintBitsToFloat((floatBitsToUint(v) & uvec3(4294963200u)));
 }
@@ -114,7 +119,8 @@ vec3 ltc_product_differences(vec3 a, vec3 b, vec3 c, vec3 d) {
     vec3 c_low = (c - _e6);
     vec3 d_low = (d - _e7);
     vec3 middle = (((_e4 * b_low) - (_e6 * d_low)) + ((a_low * _e5) - (c_low * _e7)));
-    return (((_e4 * _e5) - (_e6 * _e7)) + (middle + ((a_low * b_low) - (c_low * d_low))));
+    vec3 _e22 = ltc_apart(((_e4 * _e5) - (_e6 * _e7)));
+    return (_e22 + (middle + ((a_low * b_low) - (c_low * d_low))));
 }
 
 // The cross product, each component to its own last digits where they do not cancel by more than 2^12.
@@ -135,15 +141,17 @@ LtcSplit ltc_split(vec3 v) {
 }
 
 LtcSplit ltc_split_sum(vec3 large, vec3 small) {
-    vec3 _e3 = ltc_whole((large + small));
-    return LtcSplit(_e3, ((large - _e3) + small));
+    vec3 _e2 = ltc_apart(large);
+    vec3 _e4 = ltc_whole((_e2 + small));
+    return LtcSplit(_e4, ((_e2 - _e4) + small));
 }
 
 // |a|^2 - |b|^2 to some 2^-33, coordinates and lengths up to about 1.
 float ltc_difference_of_squares(LtcSplit a, LtcSplit b) {
     float middle = (dot(a.whole, a.rest) - dot(b.whole, b.rest));
     float small = (dot(a.rest, a.rest) - dot(b.rest, b.rest));
-    return ((dot(a.whole, a.whole) - dot(b.whole, b.whole)) + ((2.0 * middle) + small));
+    vec3 _e24 = ltc_apart(vec3((dot(a.whole, a.whole) - dot(b.whole, b.whole))));
+    return (_e24.x + ((2.0 * middle) + small));
 }
 
 float ltc_largest_entry(mat3x3 m) {

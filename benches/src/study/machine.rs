@@ -1,0 +1,61 @@
+//! Where a study ran.
+
+use serde::{Deserialize, Serialize};
+
+/// A machine, as far as times depend on it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Machine {
+    /// The processor's own name for itself.
+    pub cpu: String,
+    /// Threads that may run at once.
+    pub threads: usize,
+    /// Operating system and architecture.
+    pub system: String,
+    /// What the program was compiled for and how.
+    pub build: String,
+    /// Runnable processes a minute before the run, where the system tells: above 1, somebody else was at work.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load: Option<f64>,
+    /// The graphics device that frames were shaded on, where there was one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gpu: Option<String>,
+}
+
+impl Machine {
+    /// This one.
+    pub fn here() -> Self {
+        Self {
+            cpu: processor().unwrap_or_else(|| "unknown processor".to_owned()),
+            threads: std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
+            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            build: build(),
+            load: load(),
+            gpu: None,
+        }
+    }
+}
+
+fn processor() -> Option<String> {
+    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    let line = text.lines().find(|line| line.starts_with("model name"))?;
+    Some(line.split_once(':')?.1.trim().to_owned())
+}
+
+fn load() -> Option<f64> {
+    std::fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
+}
+
+fn build() -> String {
+    let mode = if cfg!(debug_assertions) { "unoptimised" } else { "optimised" };
+    let features = [
+        (cfg!(target_feature = "avx512f"), "AVX-512"),
+        (cfg!(target_feature = "avx2"), "AVX2"),
+        (cfg!(target_feature = "fma"), "FMA"),
+    ];
+    let named: Vec<&str> = features.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
+    if named.is_empty() {
+        format!("{mode}, baseline instructions; batches choose theirs at run time")
+    } else {
+        format!("{mode}, {}", named.join(", "))
+    }
+}

@@ -1,0 +1,93 @@
+//! Times of many things, measured in turns.
+
+use std::time::Instant;
+
+use super::Interval;
+
+/// How long to measure.
+#[derive(Clone, Copy, Debug)]
+pub struct Rounds {
+    /// How often each thing is measured.
+    pub count: usize,
+    /// What one measurement takes at least, in seconds, however often the thing has to be repeated for that.
+    pub seconds: f64,
+}
+
+/// Something to be timed: what to do, and how many units that is.
+pub struct Task<'a> {
+    run: Box<dyn FnMut() + 'a>,
+    units: f64,
+}
+
+impl<'a> Task<'a> {
+    /// `run` does `units` of what is asked for. It must hand its results to [`std::hint::black_box`].
+    pub fn new(units: usize, run: impl FnMut() + 'a) -> Self {
+        Self { run: Box::new(run), units: units as f64 }
+    }
+
+    fn seconds(&mut self, repeats: u32) -> f64 {
+        let start = Instant::now();
+        for _ in 0..repeats {
+            (self.run)();
+        }
+        start.elapsed().as_secs_f64()
+    }
+
+    /// How often to repeat it, so that a measurement lasts long enough; warms up by the way.
+    fn repeats(&mut self, seconds: f64) -> u32 {
+        let mut repeats = 1;
+        loop {
+            let took = self.seconds(repeats);
+            if took >= 0.7 * seconds || repeats >= 1 << 24 {
+                return (f64::from(repeats) * (seconds / took.max(1e-9)).clamp(1.0, 2.0)).ceil() as u32;
+            }
+            repeats *= 2;
+        }
+    }
+}
+
+/// Nanoseconds of a unit of each task.
+///
+/// Tasks take turns: every one is measured once before any is measured again, so that what slows the machine down for some
+/// seconds falls on all of them, and shows in the intervals and not in the comparison.
+pub fn nanoseconds(tasks: &mut [Task<'_>], rounds: Rounds) -> Vec<Option<Interval>> {
+    let repeats: Vec<u32> = tasks.iter_mut().map(|task| task.repeats(rounds.seconds)).collect();
+    let mut samples = vec![Vec::with_capacity(rounds.count); tasks.len()];
+    for _ in 0..rounds.count {
+        for ((task, repeats), samples) in tasks.iter_mut().zip(&repeats).zip(&mut samples) {
+            let units = task.units * f64::from(*repeats);
+            samples.push(task.seconds(*repeats) * 1e9 / units);
+        }
+    }
+    samples.into_iter().map(Interval::of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::hint::black_box;
+
+    use super::*;
+
+    fn work(steps: u64) -> f64 {
+        (0..steps).fold(1.0, |x, i| black_box(x * 0.999 + i as f64))
+    }
+
+    #[test]
+    fn twice_the_work_takes_twice_the_time() {
+        let mut tasks = [
+            Task::new(1, || {
+                black_box(work(2_000));
+            }),
+            Task::new(1, || {
+                black_box(work(4_000));
+            }),
+            Task::new(2, || {
+                black_box(work(4_000));
+            }),
+        ];
+        let times = nanoseconds(&mut tasks, Rounds { count: 31, seconds: 1e-3 });
+        let [one, two, halves] = [0, 1, 2].map(|i| times[i].unwrap().median);
+        assert!((1.7..2.3).contains(&(two / one)), "{one} {two}");
+        assert!((0.85..1.15).contains(&(halves / one)), "{one} {halves}");
+    }
+}

@@ -1,0 +1,110 @@
+//! Where magnitude and Fresnel term are off, and what no values of the entries could mend: the limits in `docs/table-shapes.md`.
+//!
+//!     cargo run --release -p ltc-fit --example channel_limits -- [TABLES]
+
+use std::error::Error;
+use std::path::Path;
+
+use ltc_core::Alpha;
+use ltc_fit::{Brdf, DiskRule, GgxFamily, Lobe, direction, draw};
+use ltc_table::{Catalogue, Mapping};
+use rayon::prelude::*;
+
+/// Views, roughnesses and errors of 20,000 lookups up to 89° that no fit has seen, worst first.
+fn worst(tables: &Catalogue, name: &str, isotropic: bool) -> Result<(), Box<dyn Error>> {
+    let version = tables.find(name)?;
+    let table = version.table();
+    let rule = DiskRule::of_about(8192);
+    let queries = draw::up_to(draw::ALBEDO_THETA_MAX_DEGREES, 20_000, 4711, isotropic);
+    let mut errors: Vec<_> = queries
+        .par_iter()
+        .map_init(Lobe::default, |lobe, query| {
+            let widths = Alpha::new(query.alpha_x, query.alpha_y)?;
+            let (n, f) = GgxFamily.albedo(direction(query.theta, query.phi), widths, &rule, lobe);
+            let found = table.lookup(query)?;
+            Ok::<_, Box<dyn Error + Send + Sync>>((found.magnitude - n, found.fresnel - f, *query))
+        })
+        .collect::<Result<_, _>>()
+        .map_err(|e| e.to_string())?;
+    errors.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+    let count = errors.len() as f64;
+    let (n, f) = errors.iter().fold((0.0, 0.0), |(n, f), e| (n + e.0.abs() / count, f + e.1.abs() / count));
+    println!("{name}: magnitude {n:.1e} mean, Fresnel {f:.1e} mean");
+    let beyond = |limit: f64| errors.iter().filter(|e| e.0.abs() > limit).count() as f64 / count * 100.0;
+    println!("  magnitude off by more than 0.01 in {:.2} %, 0.02 in {:.2} %", beyond(0.01), beyond(0.02));
+    for (n, f, q) in errors.iter().take(8) {
+        println!(
+            "  {n:+.4} {f:+.4} at θ {:.2}°, φ {:.1}°, α {:.4} × {:.4}",
+            q.theta.to_degrees(),
+            q.phi.to_degrees(),
+            q.alpha_x,
+            q.alpha_y
+        );
+    }
+    Ok(())
+}
+
+/// Half the least largest deviation of `values` at `at` from any straight line: by the widest gap over all slopes.
+fn best_line(at: &[f64], values: &[f64]) -> f64 {
+    let gap = |slope: f64| {
+        let residuals = at.iter().zip(values).map(|(x, y)| y - slope * x);
+        let (low, high) =
+            residuals.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), r| (l.min(r), h.max(r)));
+        0.5 * (high - low)
+    };
+    // The gap is convex in the slope.
+    let (mut low, mut high) = (-100.0, 100.0);
+    for _ in 0..200 {
+        let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+        if gap(a) < gap(b) { high = b } else { low = a }
+    }
+    gap(0.5 * (low + high))
+}
+
+/// The least largest error of magnitude over θ to 89° on lines where all other axes stand on nodes, so that a lookup is a
+/// straight line between two entries, whatever those hold.
+fn limit(mapping: Mapping, len: usize) -> (f64, f64, f64) {
+    let [low, high] = [0.0, core::f64::consts::FRAC_PI_2].map(|theta| mapping.coordinate(theta));
+    let theta_at = |u: f64| mapping.value(low + u * (high - low));
+    let rule = DiskRule::of_about(8192);
+    let alphas: Vec<f64> = (0..40).map(|i| 0.01 * 100.0_f64.powf(f64::from(i) / 39.0)).collect();
+    let rows: Vec<(f64, f64, f64)> = alphas
+        .par_iter()
+        .map_init(Lobe::default, |lobe, &alpha| {
+            let mut worst = (0.0, alpha, 0.0);
+            for cell in 0..len - 1 {
+                let (from, to) = (cell as f64 / (len - 1) as f64, (cell + 1) as f64 / (len - 1) as f64);
+                let (mut at, mut values) = (Vec::new(), Vec::new());
+                for i in 0..=24 {
+                    let u = from + (to - from) * f64::from(i) / 24.0;
+                    let theta = theta_at(u);
+                    if theta <= 89_f64.to_radians() {
+                        let widths = Alpha::new(alpha, alpha).expect("it is in range");
+                        at.push(u);
+                        values.push(GgxFamily.albedo(direction(theta, 0.0), widths, &rule, lobe).0);
+                    }
+                }
+                let error = if at.len() > 2 { best_line(&at, &values) } else { 0.0 };
+                if error > worst.0 {
+                    worst = (error, alpha, theta_at(from).to_degrees());
+                }
+            }
+            worst
+        })
+        .collect();
+    rows.into_iter().fold((0.0, 0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a })
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let tables = std::env::args().nth(1).unwrap_or_else(|| "tables".to_owned());
+    let catalogue = Catalogue::read_folder(Path::new(&tables))?;
+    worst(&catalogue, "ggx-isotropic", true)?;
+    worst(&catalogue, "ggx-anisotropic", false)?;
+    for mapping in [Mapping::Linear, Mapping::HalfTangent, Mapping::SqrtOneMinusCos] {
+        for len in [8, 12, 16, 24, 32, 64] {
+            let (error, alpha, theta) = limit(mapping, len);
+            println!("{mapping:?} {len}: at least {error:.4}, at α {alpha:.3} from θ {theta:.1}°");
+        }
+    }
+    Ok(())
+}
