@@ -42,7 +42,8 @@ mod export;
 mod filtering;
 #[cfg(feature = "device")]
 mod forward;
-#[cfg(all(test, feature = "device"))]
+#[cfg(test)]
+#[cfg(feature = "device")]
 mod function_tests;
 #[cfg(feature = "device")]
 mod integrate;

@@ -217,7 +217,8 @@ fn select(source: &str, symbols: &[&str]) -> String {
     kept
 }
 
-#[cfg(all(test, feature = "export"))]
+#[cfg(test)]
+#[cfg(feature = "export")]
 mod tests {
     use super::*;
     use crate::{LightKind, ShaderRequest};
