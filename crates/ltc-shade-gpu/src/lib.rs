@@ -8,6 +8,10 @@
 //! The WGSL comes in [`modules`]: pure functions that know no bindings, and thin entry points that hold them. A program is
 //! their concatenation; [`ShaderRequest`] gives the functions alone, just those asked for.
 //!
+//! [`ShaderRequest::export`] writes them in other languages. [`probe`] tests a device by feature.
+//!
+//! Feature `device` (on) brings the devices, through wgpu; `export` (on) the other languages, through naga alone.
+//!
 //! # What is guaranteed
 //! - Inputs are checked here, on the host: a NaN, an infinity, a singular matrix or an impossible width is an
 //!   [`GpuError::Input`] that names the item's index. Nothing of that batch runs then.
