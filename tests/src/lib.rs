@@ -6,6 +6,7 @@
 mod back_end;
 mod job;
 mod lights;
+pub mod make;
 mod pairs;
 pub mod shapes;
 pub mod tolerance;
