@@ -12,7 +12,7 @@ cargo xtask test [--fast]                everything that has to pass: set-up, fo
 cargo xtask demo [--once] [--listen A]   the whole thread: builds ltc, serves the tables on A (127.0.0.1:8787 unless
                                          told otherwise), fetches one, looks it up, renders with it, and stays up
                                          until Ctrl-C (--once stops by itself)
-cargo xtask setup                        puts in place what this machine lacks for the GPU parts
+cargo xtask setup                        puts in place what this machine lacks for the GPU parts and their tests
 cargo xtask edges                        checks which crates may not depend on which
 cargo xtask tables                       fits and verifies the tables in tables/ anew (takes long)
 

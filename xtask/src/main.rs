@@ -62,7 +62,7 @@ fn carry_out(chore: &Chore) -> anyhow::Result<()> {
     match chore {
         Chore::Help => Ok(()),
         Chore::Test { fast } => test::run(&workspace, *fast),
-        Chore::Setup => setup::graphics(),
+        Chore::Setup => setup::graphics().and_then(|()| setup::compilers()),
         Chore::Edges => edges::run(&workspace),
         Chore::Demo { once, listen } => demo::run(&workspace, listen, *once),
         Chore::Tables => tables::run(&workspace),

@@ -1,8 +1,12 @@
-//! `cargo xtask setup`: a driver for the GPU parts.
+//! `cargo xtask setup`: a driver for the GPU parts, and compilers that judge the shaders which are exported.
+
+use std::process::Command;
 
 use anyhow::{Result, bail};
 
 use crate::apt;
+use crate::interrupt::Interrupted;
+use crate::process;
 use crate::say::say;
 use crate::vulkan::Search;
 
@@ -34,4 +38,38 @@ pub fn graphics() -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Programs that tests call, and Debian's packages of them: compilers, and a browser for GLSL ES.
+const COMPILERS: [(&str, &str); 3] =
+    [("glslangValidator", "glslang-tools"), ("spirv-val", "spirv-tools"), ("chromium", "chromium")];
+
+/// Finds the compilers, or installs them where that can be done. What is missing in the end is no error here: the tests that
+/// need it say so, and on a build server they fail.
+pub fn compilers() -> Result<()> {
+    let missing = missing();
+    if missing.is_empty() {
+        say(format_args!("    found {}", COMPILERS.map(|(program, _)| program).join(", ")));
+        return Ok(());
+    }
+    if apt::is_here()
+        && let Err(cause) = apt::install(&missing)
+    {
+        if cause.is::<Interrupted>() {
+            return Err(cause);
+        }
+        say(format_args!("    {cause:#}"));
+    }
+    let missing = self::missing();
+    if !missing.is_empty() {
+        let list = missing.join(", no ");
+        say(format_args!("    there is no {list}: the tests of exported shaders that need it cannot run"));
+    }
+    Ok(())
+}
+
+/// The packages of the programs that are not here.
+fn missing() -> Vec<&'static str> {
+    let here = |program: &str| process::works(Command::new(program).arg("--version"));
+    COMPILERS.into_iter().filter(|(program, _)| !here(program)).map(|(_, package)| package).collect()
 }

@@ -19,7 +19,11 @@ struct Part {
 
 /// In this order: set-up first, then what is quick to fail.
 const PARTS: [Part; 10] = [
-    Part { what: "set-up: a driver for the GPU tests", slow: false, work: graphics },
+    Part {
+        what: "set-up: a driver for the GPU tests, compilers for exported shaders",
+        slow: false,
+        work: graphics,
+    },
     Part { what: "set-up: what the outside readers need", slow: true, work: outside_tools },
     Part { what: "formatting: cargo fmt --check", slow: false, work: formatting },
     Part {
@@ -60,6 +64,7 @@ fn is_build_server() -> bool {
 
 fn graphics(_: &Workspace) -> Result<Outcome> {
     setup::graphics()?;
+    setup::compilers()?;
     Ok(Outcome::Passed)
 }
 

@@ -151,6 +151,11 @@ fn check_sizes(gpu: &Gpu, batch: &Batch<'_>) -> Result<(), GpuError> {
     Ok(())
 }
 
+/// The floats in a buffer, whatever they are.
+pub(crate) fn read_floats(gpu: &Gpu, source: &Buffer) -> Result<Vec<f32>, GpuError> {
+    Ok(read_back(gpu, source)?.into_iter().map(f32::from_bits).collect())
+}
+
 pub(crate) fn read_back(gpu: &Gpu, source: &Buffer) -> Result<Vec<u32>, GpuError> {
     let device = gpu.device();
     let staging = device.create_buffer(&wgpu::BufferDescriptor {

@@ -4,12 +4,21 @@ use ltc_core::ALPHA_MIN;
 use ltc_table::Mapping;
 
 use crate::LightKind;
-use crate::layout::mapping_code;
 
 /// A light that emits to both sides.
 pub(crate) const TWO_SIDED: u32 = 1 << 8;
 /// A cylinder with caps.
 pub(crate) const CAPS: u32 = 1 << 9;
+
+/// What stands for a mapping in a shader; the WGSL constants are generated from it.
+pub(crate) fn mapping_code(mapping: Mapping) -> u32 {
+    match mapping {
+        Mapping::Linear => 0,
+        Mapping::Sqrt => 1,
+        Mapping::SqrtOneMinusCos => 2,
+        Mapping::HalfTangent => 3,
+    }
+}
 
 /// The module `constants`.
 pub(crate) fn constants() -> String {

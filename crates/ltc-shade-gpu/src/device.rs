@@ -6,20 +6,7 @@ use wgpu::{
     Adapter, Backends, DeviceType, DownlevelFlags, ErrorFilter, Features, Instance, InstanceDescriptor,
 };
 
-use crate::GpuError;
-
-/// How a table is interpolated between its nodes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Filtering {
-    /// By the shader, in full `f32`: agrees with the CPU to rounding, on every device.
-    #[default]
-    Exact,
-    /// By the texture unit, which rounds weights to about 8 bits on hardware. Fewer fetches: 3 instead of 12 for the
-    /// isotropic table, 6 instead of 48 for the anisotropic. Needs `FLOAT32_FILTERABLE` for [`Texels::F32`].
-    Hardware,
-    /// By the shader, in full `f32`, out of a storage buffer: for devices without float textures.
-    Buffer,
-}
+use crate::{Filtering, GpuError};
 
 /// The numbers of a table on the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

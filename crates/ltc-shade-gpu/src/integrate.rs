@@ -32,8 +32,11 @@ impl Lights {
     /// # Errors
     /// [`GpuError::Device`].
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let module = compile(gpu, Program::Integrate)?;
-        Ok(Self { kernel: Kernel::new(gpu, &module, "main", None, 2)? })
+        Self::of_module(gpu, &compile(gpu, Program::Integrate)?)
+    }
+
+    pub(crate) fn of_module(gpu: &Gpu, module: &wgpu::ShaderModule) -> Result<Self, GpuError> {
+        Ok(Self { kernel: Kernel::new(gpu, module, "main", None, 2)? })
     }
 
     /// The fraction of each lobe that sees its light, in [0, 1]. A degenerate light gives 0.

@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use ltc_table::{Axis, Kind, Mapping, Table};
 
 use crate::GpuError;
+use crate::constants::mapping_code;
 
 /// `LtcAxis`.
 #[repr(C)]
@@ -114,16 +115,6 @@ const _: () = {
     assert!(size_of::<SurfaceLayout>() == 96);
     assert!(size_of::<LightLayout>() == 80);
 };
-
-/// What stands for a mapping in a shader; the WGSL constants are generated from it.
-pub(crate) fn mapping_code(mapping: Mapping) -> u32 {
-    match mapping {
-        Mapping::Linear => 0,
-        Mapping::Sqrt => 1,
-        Mapping::SqrtOneMinusCos => 2,
-        Mapping::HalfTangent => 3,
-    }
-}
 
 impl AxisUniform {
     fn of(axis: &Axis) -> Self {

@@ -8,6 +8,10 @@
 //! The WGSL comes in [`modules`]: pure functions that know no bindings, and thin entry points that hold them. A program is
 //! their concatenation; [`ShaderRequest`] gives the functions alone, just those asked for.
 //!
+//! [`ShaderRequest::export`] writes them in other languages. [`probe`] tests a device by feature.
+//!
+//! Feature `device` (on) brings the devices, through wgpu; `export` (on) the other languages, through naga alone.
+//!
 //! # What is guaranteed
 //! - Inputs are checked here, on the host: a NaN, an infinity, a singular matrix or an impossible width is an
 //!   [`GpuError::Input`] that names the item's index. Nothing of that batch runs then.
@@ -30,30 +34,61 @@
 //! # Ok::<(), ltc_shade_gpu::GpuError>(())
 //! ```
 
+#[cfg(feature = "device")]
 mod compute;
 mod constants;
+#[cfg(feature = "device")]
 mod device;
+#[cfg(feature = "device")]
 mod error;
+#[cfg(feature = "export")]
+mod export;
+mod filtering;
+#[cfg(feature = "device")]
 mod forward;
 #[cfg(test)]
+#[cfg(feature = "device")]
 mod function_tests;
+#[cfg(feature = "device")]
 mod integrate;
+#[cfg(feature = "device")]
 mod layout;
+#[cfg(feature = "device")]
 mod light;
+#[cfg(feature = "device")]
 mod lookup;
 pub mod modules;
+#[cfg(feature = "device")]
+mod probe;
 mod request;
+#[cfg(feature = "device")]
 mod shade;
+#[cfg(feature = "device")]
 mod surface;
+#[cfg(feature = "device")]
 mod table_textures;
 
-pub use device::{Filtering, Gpu, GpuInfo, GpuOptions, Texels};
+#[cfg(feature = "device")]
+pub use device::{Gpu, GpuInfo, GpuOptions, Texels};
+#[cfg(feature = "device")]
 pub use error::GpuError;
+#[cfg(feature = "export")]
+pub use export::{Code, ExportError, Exported, Language};
+pub use filtering::Filtering;
+#[cfg(feature = "device")]
 pub use forward::{Forward, ForwardMaterial, ForwardVertex, ForwardView};
+#[cfg(feature = "device")]
 pub use integrate::{LightJob, Lights, PolygonJob, Polygons};
+#[cfg(feature = "device")]
 pub use light::{AreaLight, LightShape};
+#[cfg(feature = "device")]
 pub use lookup::{LookupResult, Lookups};
+#[cfg(feature = "device")]
+pub use probe::{Finding, ProbeReport, Verdict, probe};
 pub use request::{Feature, LightKind, ShaderRequest, UnknownName};
+#[cfg(feature = "device")]
 pub use shade::Shader;
+#[cfg(feature = "device")]
 pub use surface::SurfacePoint;
+#[cfg(feature = "device")]
 pub use table_textures::{TableTextures, Tables};

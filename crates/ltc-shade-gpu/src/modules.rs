@@ -218,10 +218,10 @@ fn select(source: &str, symbols: &[&str]) -> String {
 }
 
 #[cfg(test)]
+#[cfg(feature = "export")]
 mod tests {
     use super::*;
     use crate::{LightKind, ShaderRequest};
-    use wgpu::naga;
 
     fn validate(source: &str) -> Result<naga::Module, String> {
         let module = naga::front::wgsl::parse_str(source).map_err(|e| e.emit_to_string(source))?;

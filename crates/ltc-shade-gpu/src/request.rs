@@ -134,6 +134,26 @@ impl Feature {
     }
 }
 
+impl Feature {
+    /// What it brings, in a few words.
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::Isotropic => "lookup in a table for isotropic materials",
+            Self::Anisotropic => "lookup in a table for anisotropic materials",
+            Self::HardwareFiltering => "lookups by the texture unit, faster and to its precision",
+            Self::FunctionTables => "lookups call a function of yours for each texel, over any memory",
+            Self::SurfaceHorizon => "cuts lights at the surface's horizon: nothing leaks from below",
+            Self::CosineHorizon => "cuts lights at the horizon of cosine space",
+            Self::TwoSided => "flat lights take a parameter that says whether their back emits",
+            Self::RationalEdges => "angles of edges by a rational function instead of an arc tangent",
+            Self::Textured => "where and how wide a textured light's texture is fetched",
+            Self::Fresnel => "reflectance from F0, F90 and a table's two channels",
+            Self::Material => "glTF's metallic-roughness parameters, with anisotropy",
+            Self::Frame => "the shading frame from normal and tangent",
+        }
+    }
+}
+
 impl fmt::Display for LightKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
@@ -158,7 +178,11 @@ pub struct UnknownName {
     pub known: String,
 }
 
-fn by_name<T: Copy + fmt::Display>(what: &'static str, all: &[T], name: &str) -> Result<T, UnknownName> {
+pub(crate) fn by_name<T: Copy + fmt::Display>(
+    what: &'static str,
+    all: &[T],
+    name: &str,
+) -> Result<T, UnknownName> {
     all.iter().find(|item| item.to_string() == name).copied().ok_or_else(|| UnknownName {
         what,
         name: name.to_owned(),
@@ -206,12 +230,17 @@ impl ShaderRequest {
         Self { lights: lights.into_iter().collect(), features: features.into_iter().collect() }
     }
 
-    fn has(&self, feature: Feature) -> bool {
+    pub(crate) fn has(&self, feature: Feature) -> bool {
         self.features.contains(&feature)
     }
 
+    /// Whether it brings no function at all.
+    pub fn is_empty(&self) -> bool {
+        self.roots().is_empty()
+    }
+
     /// The modules to begin with.
-    fn roots(&self) -> Vec<&'static str> {
+    pub(crate) fn roots(&self) -> Vec<&'static str> {
         let mut roots = Vec::new();
         let way = match (self.has(Feature::FunctionTables), self.has(Feature::HardwareFiltering)) {
             (true, _) => 2,
@@ -247,7 +276,7 @@ impl ShaderRequest {
     }
 
     /// The words that `//#if` lines of the modules ask for.
-    fn symbols(&self) -> Vec<&'static str> {
+    pub(crate) fn symbols(&self) -> Vec<&'static str> {
         [
             (Feature::SurfaceHorizon, "surface_horizon"),
             (Feature::CosineHorizon, "cosine_horizon"),

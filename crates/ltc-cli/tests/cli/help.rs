@@ -2,7 +2,7 @@
 
 use crate::support::ltc;
 
-const VERBS: [&str; 14] = [
+const VERBS: [&str; 16] = [
     "serve",
     "fit",
     "tables",
@@ -13,6 +13,8 @@ const VERBS: [&str; 14] = [
     "integrate",
     "export",
     "render",
+    "shader",
+    "probe",
     "bench",
     "token",
     "backup",

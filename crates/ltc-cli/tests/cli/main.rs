@@ -7,11 +7,13 @@ mod export;
 mod fit;
 mod help;
 mod lines;
+mod probe;
 mod render;
 #[cfg(unix)]
 mod resume;
 #[cfg(unix)]
 mod serve;
+mod shader;
 mod store;
 mod support;
 mod tables;

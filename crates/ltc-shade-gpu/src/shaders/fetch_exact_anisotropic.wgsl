@@ -21,3 +21,20 @@ fn ltc_fetch_anisotropic(
     }
     return sum;
 }
+
+// The table's answer for the unit vector `wo`, in the shading frame.
+fn ltc_lookup_anisotropic(
+    texture: texture_3d<f32>,
+    axes: LtcAxes,
+    wo: vec3f,
+    alpha_x: f32,
+    alpha_y: f32,
+) -> LtcLookup {
+    let place = ltc_anisotropic_place(axes, wo, alpha_x, alpha_y);
+    var texels = ltc_fetch_anisotropic(texture, axes, place);
+    if !ltc_regular(texels) {
+        let nearest = ltc_anisotropic_nearest(place);
+        texels = ltc_with_matrix(texels, ltc_fetch_anisotropic(texture, axes, nearest));
+    }
+    return ltc_anisotropic_decode(texels, place);
+}

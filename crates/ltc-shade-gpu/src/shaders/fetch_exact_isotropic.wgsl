@@ -13,3 +13,19 @@ fn ltc_fetch_isotropic(texture: texture_2d_array<f32>, place: LtcIsotropicPlace)
     }
     return sum;
 }
+
+// The table's answer for the unit vector `wo`, in the shading frame.
+fn ltc_lookup_isotropic(
+    texture: texture_2d_array<f32>,
+    axes: LtcAxes,
+    wo: vec3f,
+    alpha: f32,
+) -> LtcLookup {
+    let place = ltc_isotropic_place(axes, wo, alpha);
+    var texels = ltc_fetch_isotropic(texture, place);
+    if !ltc_regular(texels) {
+        let nearest = LtcIsotropicPlace(ltc_nearest(place.theta), ltc_nearest(place.alpha));
+        texels = ltc_with_matrix(texels, ltc_fetch_isotropic(texture, nearest));
+    }
+    return ltc_isotropic_decode(texels, wo);
+}

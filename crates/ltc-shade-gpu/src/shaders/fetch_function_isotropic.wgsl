@@ -17,3 +17,14 @@ fn ltc_fetch_isotropic(axes: LtcAxes, place: LtcIsotropicPlace) -> LtcTexels {
     }
     return sum;
 }
+
+// The table's answer for the unit vector `wo`, in the shading frame.
+fn ltc_lookup_isotropic(axes: LtcAxes, wo: vec3f, alpha: f32) -> LtcLookup {
+    let place = ltc_isotropic_place(axes, wo, alpha);
+    var texels = ltc_fetch_isotropic(axes, place);
+    if !ltc_regular(texels) {
+        let nearest = LtcIsotropicPlace(ltc_nearest(place.theta), ltc_nearest(place.alpha));
+        texels = ltc_with_matrix(texels, ltc_fetch_isotropic(axes, nearest));
+    }
+    return ltc_isotropic_decode(texels, wo);
+}

@@ -34,3 +34,21 @@ fn ltc_fetch_anisotropic(
         place.theta.t,
     );
 }
+
+// The table's answer for the unit vector `wo`, in the shading frame.
+fn ltc_lookup_anisotropic(
+    texture: texture_3d<f32>,
+    filtering: sampler,
+    axes: LtcAxes,
+    wo: vec3f,
+    alpha_x: f32,
+    alpha_y: f32,
+) -> LtcLookup {
+    let place = ltc_anisotropic_place(axes, wo, alpha_x, alpha_y);
+    var texels = ltc_fetch_anisotropic(texture, filtering, axes, place);
+    if !ltc_regular(texels) {
+        let nearest = ltc_anisotropic_nearest(place);
+        texels = ltc_with_matrix(texels, ltc_fetch_anisotropic(texture, filtering, axes, nearest));
+    }
+    return ltc_anisotropic_decode(texels, place);
+}

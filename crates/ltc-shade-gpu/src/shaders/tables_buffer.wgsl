@@ -15,21 +15,9 @@ fn ltc_anisotropic_texel(entry: u32, group: u32) -> vec4f {
 }
 
 fn lookup_isotropic(wo: vec3f, alpha: f32) -> LtcLookup {
-    let place = ltc_isotropic_place(isotropic_axes, wo, alpha);
-    var texels = ltc_fetch_isotropic(isotropic_axes, place);
-    if !ltc_regular(texels) {
-        let nearest = LtcIsotropicPlace(ltc_nearest(place.theta), ltc_nearest(place.alpha));
-        texels = ltc_with_matrix(texels, ltc_fetch_isotropic(isotropic_axes, nearest));
-    }
-    return ltc_isotropic_decode(texels, wo);
+    return ltc_lookup_isotropic(isotropic_axes, wo, alpha);
 }
 
 fn lookup_anisotropic(wo: vec3f, alpha_x: f32, alpha_y: f32) -> LtcLookup {
-    let place = ltc_anisotropic_place(anisotropic_axes, wo, alpha_x, alpha_y);
-    var texels = ltc_fetch_anisotropic(anisotropic_axes, place);
-    if !ltc_regular(texels) {
-        let nearest = ltc_anisotropic_nearest(place);
-        texels = ltc_with_matrix(texels, ltc_fetch_anisotropic(anisotropic_axes, nearest));
-    }
-    return ltc_anisotropic_decode(texels, place);
+    return ltc_lookup_anisotropic(anisotropic_axes, wo, alpha_x, alpha_y);
 }

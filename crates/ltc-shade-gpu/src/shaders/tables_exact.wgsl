@@ -6,21 +6,9 @@
 @group(0) @binding(3) var anisotropic_table: texture_3d<f32>;
 
 fn lookup_isotropic(wo: vec3f, alpha: f32) -> LtcLookup {
-    let place = ltc_isotropic_place(isotropic_axes, wo, alpha);
-    var texels = ltc_fetch_isotropic(isotropic_table, place);
-    if !ltc_regular(texels) {
-        let nearest = LtcIsotropicPlace(ltc_nearest(place.theta), ltc_nearest(place.alpha));
-        texels = ltc_with_matrix(texels, ltc_fetch_isotropic(isotropic_table, nearest));
-    }
-    return ltc_isotropic_decode(texels, wo);
+    return ltc_lookup_isotropic(isotropic_table, isotropic_axes, wo, alpha);
 }
 
 fn lookup_anisotropic(wo: vec3f, alpha_x: f32, alpha_y: f32) -> LtcLookup {
-    let place = ltc_anisotropic_place(anisotropic_axes, wo, alpha_x, alpha_y);
-    var texels = ltc_fetch_anisotropic(anisotropic_table, anisotropic_axes, place);
-    if !ltc_regular(texels) {
-        let nearest = ltc_anisotropic_nearest(place);
-        texels = ltc_with_matrix(texels, ltc_fetch_anisotropic(anisotropic_table, anisotropic_axes, nearest));
-    }
-    return ltc_anisotropic_decode(texels, place);
+    return ltc_lookup_anisotropic(anisotropic_table, anisotropic_axes, wo, alpha_x, alpha_y);
 }
