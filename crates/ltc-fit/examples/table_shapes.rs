@@ -168,6 +168,7 @@ fn draw(outcomes: &[Outcome], optima: [f64; 2]) -> String {
     text((x, y + 42.0), "middle", "#333", "KiB of a half-float texture");
     text((MARGINS[0] + 8.0, MARGINS[2] + 14.0), "start", "#333", "mean total variation");
     let right = WIDTH - MARGINS[1] - 4.0;
+    let mut leaders = Vec::new();
     for ((optimum, colour), words) in optima
         .into_iter()
         .zip(["#b33", "#36a"])
@@ -175,9 +176,18 @@ fn draw(outcomes: &[Outcome], optima: [f64; 2]) -> String {
     {
         text((right, place(1.0, optimum).1 + 16.0), "end", colour, words);
     }
-    for (outcome, at) in outcomes.iter().zip(label_places(outcomes)) {
+    for (outcome, (at, point)) in outcomes.iter().zip(label_places(outcomes)) {
         let colour = if outcome.isotropic { "#36a" } else { "#b33" };
         text(at, "start", colour, outcome.name);
+        leaders.push((at, point));
+    }
+    for ((x1, y1), (x2, y2)) in leaders {
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{:.1} {:.1}L{x2:.1} {y2:.1}\" stroke=\"#999\" stroke-width=\"0.7\"/>",
+            x1 - 2.0,
+            y1 - 4.0
+        );
     }
     for outcome in outcomes {
         let (x, y) = place(outcome.kilobytes, outcome.tv);
@@ -188,17 +198,26 @@ fn draw(outcomes: &[Outcome], optima: [f64; 2]) -> String {
     svg
 }
 
-/// Where the labels start: above and to the right of their points, higher where another label is in the way.
-fn label_places(outcomes: &[Outcome]) -> Vec<(f64, f64)> {
+/// Where the labels start, each with its point: to the right, above or below the point, ever farther where other labels are in
+/// the way.
+fn label_places(outcomes: &[Outcome]) -> Vec<((f64, f64), (f64, f64))> {
     const LINE: f64 = 15.0;
     let mut taken: Vec<(f64, f64, f64)> = Vec::new();
+    let mut places = Vec::new();
     for outcome in outcomes {
-        let (x, y) = place(outcome.kilobytes, outcome.tv);
-        let (left, right) = (x + 7.0, x + 12.0 + 7.5 * outcome.name.chars().count() as f64);
+        let point = place(outcome.kilobytes, outcome.tv);
+        let left = point.0 + 12.0;
+        let right = left + 5.0 + 7.5 * outcome.name.chars().count() as f64;
         let is_free =
             |y: f64| taken.iter().all(|&(l, r, at)| right < l || r < left || (at - y).abs() >= LINE);
-        let y = (0..).map(|i| y - 6.0 - LINE * f64::from(i)).find(|y| is_free(*y)).unwrap_or(y);
+        // 0, 1, −1, 2, −2, … lines away.
+        let y = (0..)
+            .map(|i: i32| if i % 2 == 1 { -(i + 1) / 2 } else { i / 2 })
+            .map(|lines| point.1 + 4.0 + LINE * f64::from(lines))
+            .find(|y| is_free(*y))
+            .unwrap_or(point.1);
         taken.push((left, right, y));
+        places.push(((left, y), point));
     }
-    taken.into_iter().map(|(left, _, y)| (left, y)).collect()
+    places
 }

@@ -68,11 +68,13 @@ impl Live {
         let known = self.lobes.get().into_iter().flatten().find(|(stage, _)| *stage == progress.stage);
         let of_stage = known.map_or(0.0, |(_, lobes)| *lobes as f64);
         if state.stage != progress.stage {
+            // What was done before the first report was done by an earlier attempt.
+            state.stage_done = if state.stage.is_empty() { within } else { 0.0 };
             state.stage = progress.stage;
-            state.stage_done = within;
             let left = progress.total.saturating_sub(progress.done);
             state.lines.push_back(format!("{}: {left} of {} left", progress.stage, progress.total));
-        } else if within > state.stage_done {
+        }
+        if within > state.stage_done {
             state.lobes += (within - state.stage_done) * of_stage;
             state.stage_done = within;
         }

@@ -106,11 +106,13 @@ impl Refits {
         let (queued, running) = self.0.jobs.depth().await?;
         let counts = &self.0.counts;
         let at_work = self.0.at_work.lock().unwrap_or_else(PoisonError::into_inner);
+        // The sum of nothing is −0.
+        let lobes_per_second = 0.0 + at_work.values().map(|(rate, _)| rate).sum::<f64>();
         Ok(RefitMetrics {
             queued,
             running,
             lobes_total: get(&counts.lobes),
-            lobes_per_second: at_work.values().map(|(rate, _)| rate).sum(),
+            lobes_per_second,
             tv: at_work.values().find_map(|(_, tv)| *tv),
             succeeded_total: get(&counts.succeeded),
             failed_total: get(&counts.failed),
