@@ -1,5 +1,7 @@
 //! The ways to integrate a polygon that the workspace has.
 
+use std::sync::LazyLock;
+
 use ltc_shade_gpu::{GpuError, GpuOptions, PolygonJob, Polygons};
 
 use crate::Job;
@@ -35,10 +37,18 @@ pub struct CpuF32;
 /// `ltc_shade_gpu` on the best device there is.
 #[derive(Debug)]
 pub struct Gpu {
-    gpu: ltc_shade_gpu::Gpu,
-    polygons: Polygons,
+    device: &'static Device,
     path: Path,
 }
+
+/// One device for all tests of a process: compiling its pipeline takes longer than most of them.
+#[derive(Debug)]
+struct Device {
+    gpu: ltc_shade_gpu::Gpu,
+    polygons: Polygons,
+}
+
+static DEVICE: LazyLock<Option<Device>> = LazyLock::new(Device::open);
 
 /// Which of the shader's two paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,12 +79,8 @@ impl BackEnd for CpuF32 {
     }
 }
 
-impl Gpu {
-    /// Opens a device, or says why there is none and gives `None`.
-    ///
-    /// # Panics
-    /// When there is no device and `CI` is set, where everything must run; and for any other fault of a device.
-    pub fn open(path: Path) -> Option<Self> {
+impl Device {
+    fn open() -> Option<Self> {
         let gpu = match ltc_shade_gpu::Gpu::new(GpuOptions::default()) {
             Ok(gpu) => gpu,
             Err(error @ GpuError::NoAdapter { .. }) => {
@@ -86,14 +92,24 @@ impl Gpu {
         };
         println!("on {}", gpu.info());
         match Polygons::new(&gpu) {
-            Ok(polygons) => Some(Self { gpu, polygons, path }),
+            Ok(polygons) => Some(Self { gpu, polygons }),
             Err(error) => panic!("{error}"),
         }
+    }
+}
+
+impl Gpu {
+    /// The device, or `None` where there is none and that was said.
+    ///
+    /// # Panics
+    /// When there is no device and `CI` is set, where everything must run; and for any other fault of a device.
+    pub fn open(path: Path) -> Option<Self> {
+        DEVICE.as_ref().map(|device| Self { device, path })
     }
 
     /// The device.
     pub fn device(&self) -> &ltc_shade_gpu::Gpu {
-        &self.gpu
+        &self.device.gpu
     }
 
     fn run(&self, jobs: &[&Job], path: Path) -> Result<Vec<f64>, String> {
@@ -102,8 +118,8 @@ impl Gpu {
             .map(|job| PolygonJob { m: job.m, vertices: &job.vertices, sides: job.sides })
             .collect();
         let results = match path {
-            Path::Polygons => self.polygons.integrate(&self.gpu, &jobs),
-            Path::Quads => self.polygons.integrate_quads(&self.gpu, &jobs),
+            Path::Polygons => self.device.polygons.integrate(&self.device.gpu, &jobs),
+            Path::Quads => self.device.polygons.integrate_quads(&self.device.gpu, &jobs),
         };
         Ok(results.map_err(|e| e.to_string())?.into_iter().map(f64::from).collect())
     }

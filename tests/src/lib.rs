@@ -5,12 +5,17 @@
 
 mod back_end;
 mod job;
+mod lights;
+pub mod make;
 mod pairs;
 pub mod shapes;
 pub mod tolerance;
 
 pub use back_end::{BackEnd, CpuF32, CpuF64, Gpu, Path};
 pub use job::Job;
+pub use lights::{
+    LightBackEnd, LightsF32, LightsF64, LightsOnGpu, condition, light_back_ends, light_jobs, matrix,
+};
 pub use pairs::{lit, lit_share, pairs, wide};
 
 use ltc_table::{Catalogue, Table};

@@ -4,6 +4,10 @@
 /// of an 8-bit picture of a light of radiance 1.
 pub const BACK_ENDS: f64 = 1e-4;
 
+/// Any kind of light on any back end against CPU `f64` on the same inputs, for lobes of condition number up to 100, and in
+/// proportion to it beyond: what the workspace promises.
+pub const LIGHTS: f64 = 2e-4;
+
 /// GPU against CPU `f64` from the material on, down to α = 0 and up to θ = 90°. Directions in `f32` are 6·10⁻⁸ apart, and a
 /// lobe of the narrowest width in the tables, 10⁻³, is 10⁻⁴ wide or less seen at grazing angles: the edge of a light that cuts
 /// it moves by a few times 6·10⁻⁸ / 10⁻⁴ of the lobe.

@@ -1,12 +1,13 @@
-//! Direct light of a rectangle on GGX and Lambert, by multiple importance sampling.
+//! Direct light on GGX and Lambert, by multiple importance sampling.
 
 use std::f64::consts::PI;
 
 use glam::{DVec3, dvec3};
 
+use crate::emitter::Emitter;
 use crate::ggx::Ggx;
 use crate::points::{R2, cosine_direction};
-use crate::rect_light::{LightHit, RectLight};
+use crate::rect_light::LightHit;
 
 /// What a light of unit radiance sends towards the eye, split so that any Fresnel and any albedo follow linearly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -45,13 +46,13 @@ impl Direct {
 }
 
 /// Direct light at a surface point, unshadowed. See [`direct_light_visible`].
-pub fn direct_light(wo: DVec3, ggx: &Ggx, light: &RectLight, samples: u32, seed: u64) -> Direct {
+pub fn direct_light(wo: DVec3, ggx: &Ggx, light: &impl Emitter, samples: u32, seed: u64) -> Direct {
     direct_light_visible(wo, ggx, light, samples, seed, |_| true)
 }
 
 /// Direct light of `light` (unit radiance) at the origin of the shading frame, seen from the unit direction `wo`.
 ///
-/// Unbiased: `samples` light directions from each of three techniques (uniform points on the light, visible GGX normals,
+/// Unbiased: `samples` light directions from each of three techniques (the light's own, visible GGX normals,
 /// cosine-weighted directions) share one estimator by the balance heuristic (Veach 1995), every sample
 /// serving all three integrals. Points are the R2 sequence, shifted by `seed`, so that the error falls almost like
 /// 1/n; equal seeds give equal results. The cost is `3 · samples` evaluations, and nothing is allocated.
@@ -64,7 +65,7 @@ pub fn direct_light(wo: DVec3, ggx: &Ggx, light: &RectLight, samples: u32, seed:
 pub fn direct_light_visible(
     wo: DVec3,
     ggx: &Ggx,
-    light: &RectLight,
+    light: &impl Emitter,
     samples: u32,
     seed: u64,
     mut visible: impl FnMut(&LightHit) -> bool,

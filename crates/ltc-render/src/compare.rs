@@ -57,8 +57,7 @@ pub fn compare(
     let silent = RenderOptions { progress: None, ..*options };
     let test = render(scene, tables, backend, &silent)?;
     let reference = render(scene, tables, Backend::Reference, options)?;
-    let errors = ErrorFigures::of(&test.image, &reference.image, &reference.on_surface);
-    Ok(Comparison { test, reference, errors, amplification: AMPLIFICATION })
+    Ok(Comparison::of(test, reference))
 }
 
 impl ErrorFigures {
@@ -88,6 +87,12 @@ impl ErrorFigures {
 }
 
 impl Comparison {
+    /// Of two pictures of one scene.
+    pub fn of(test: Rendered, reference: Rendered) -> Self {
+        let errors = ErrorFigures::of(&test.image, &reference.image, &reference.on_surface);
+        Self { test, reference, errors, amplification: AMPLIFICATION }
+    }
+
     /// Writes both pictures and their difference side by side: picture · reference · difference.
     ///
     /// In a PNG the difference is in false colour: black where both agree, towards yellow where the picture is brighter

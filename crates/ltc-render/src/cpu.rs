@@ -1,12 +1,12 @@
 //! LTC shading on the CPU, in `f64`.
 
 use glam::DVec3;
-use ltc_core::{Light as _, Ltc, Polygon, Sides, reflectance};
+use ltc_core::{Horizon, Ltc, reflectance};
 use ltc_table::{Lookup, Query};
 use rayon::prelude::*;
 
+use crate::emitter::Emitter;
 use crate::gbuffer::SurfacePoint;
-use crate::light::Emitter;
 use crate::shader::{Local, Shade, matrix, threads};
 use crate::{RenderError, RenderTables};
 
@@ -47,11 +47,15 @@ impl Cpu<'_> {
             .collect();
         let mut sum = DVec3::ZERO;
         for light in self.lights {
-            let corners = local.corners(light);
-            let sides = if light.two_sided { Sides::Two } else { Sides::One };
-            let polygon = Polygon::<f64>::new(&corners, sides)?;
-            let fraction: f64 = lobes.iter().map(|(weight, ltc)| weight * polygon.integrate(ltc)).sum();
-            let reflected = DVec3::from_array(specular) * fraction + material.albedo * polygon.irradiance();
+            let seen = local.light(light);
+            let mut fraction = 0.0;
+            for (weight, ltc) in &lobes {
+                fraction += weight * seen.integrate(ltc, Horizon::BOTH)?;
+            }
+            let mut reflected = DVec3::from_array(specular) * fraction;
+            if material.albedo != DVec3::ZERO {
+                reflected += material.albedo * seen.integrate(&Ltc::<f64>::cosine(), Horizon::BOTH)?;
+            }
             sum += light.radiance * reflected;
         }
         Ok(sum)

@@ -1,10 +1,10 @@
 //! LTC shading on the GPU.
 
 use glam::{DVec3, Vec3};
-use ltc_shade_gpu::{Gpu, GpuOptions, RectLight, Shader, TableTextures, Tables};
+use ltc_shade_gpu::{AreaLight, Gpu, GpuOptions, LightShape, Shader, TableTextures, Tables};
 
+use crate::emitter::Emitter;
 use crate::gbuffer::SurfacePoint;
-use crate::light::Emitter;
 use crate::shader::Shade;
 use crate::{RenderError, RenderTables};
 
@@ -14,7 +14,7 @@ pub(crate) struct GpuBackend {
     shader: Shader,
     isotropic: TableTextures,
     anisotropic: TableTextures,
-    lights: Vec<RectLight>,
+    lights: Vec<AreaLight>,
 }
 
 impl GpuBackend {
@@ -47,12 +47,8 @@ impl Shade for GpuBackend {
     }
 }
 
-fn light(emitter: &Emitter) -> RectLight {
-    RectLight {
-        corners: emitter.corners.map(DVec3::as_vec3),
-        radiance: emitter.radiance.as_vec3(),
-        two_sided: emitter.two_sided,
-    }
+fn light(emitter: &Emitter) -> AreaLight {
+    AreaLight { shape: LightShape::from(&emitter.light), radiance: emitter.radiance.as_vec3() }
 }
 
 fn surface_point(point: &SurfacePoint) -> ltc_shade_gpu::SurfacePoint {

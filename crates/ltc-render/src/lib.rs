@@ -1,4 +1,4 @@
-//! Scenes of spheres and planes under rectangular lights, shaded by LTC on the CPU or the GPU, or by the reference
+//! Scenes of spheres and planes under area lights of every shape, shaded by LTC on the CPU or the GPU, or by the reference
 //! integrator.
 //!
 //! A [`Scene`] is read from JSON (`examples/scenes/README.md` documents the format). [`render`] makes an [`Image`] of it
@@ -28,6 +28,7 @@
 mod camera;
 mod compare;
 mod cpu;
+mod emitter;
 mod error;
 pub mod gbuffer;
 #[cfg(feature = "gpu")]

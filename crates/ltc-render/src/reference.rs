@@ -1,12 +1,12 @@
 //! Ground truth: GGX and Lambert themselves, by multiple importance sampling.
 
 use glam::DVec3;
-use ltc_reference::{Ggx, RectLight, direct_light};
+use ltc_reference::Ggx;
 use rayon::prelude::*;
 
 use crate::RenderError;
+use crate::emitter::Emitter;
 use crate::gbuffer::SurfacePoint;
-use crate::light::Emitter;
 use crate::shader::{Local, Shade, threads};
 
 /// The reference back end. It uses no table and none of the closed forms.
@@ -38,10 +38,16 @@ impl Reference<'_> {
         let ggx = Ggx::new(material.alpha.x(), material.alpha.y())?;
         let mut sum = DVec3::ZERO;
         for (i, light) in (0_u64..).zip(self.lights) {
-            let rectangle = RectLight::new(local.corners(light), light.two_sided)?;
             // Distinct for each sample and light, whatever the seed; the integrator scrambles it.
             let seed = self.seed ^ (point.sample * self.lights.len() as u64 + i);
-            let direct = direct_light(local.wo, &ggx, &rectangle, self.samples, seed);
+            let direct = light.direct(
+                |p| local.point(p),
+                |v| local.direction(v),
+                local.wo,
+                &ggx,
+                self.samples,
+                seed,
+            )?;
             let f90 = DVec3::splat(material.f90);
             let reflected = direct.specular_rgb(material.f0, f90) + material.albedo * direct.diffuse;
             sum += light.radiance * reflected;

@@ -6,7 +6,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::camera::View;
-use crate::light::Emitter;
+use crate::emitter::Emitter;
 use crate::object::Shape;
 use crate::validate::color;
 use crate::{Camera, Light, Object, RenderError, ResolvedMaterial, SceneError};

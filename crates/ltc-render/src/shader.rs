@@ -1,11 +1,11 @@
 //! What the back ends have in common.
 
 use glam::{DMat3, DVec3};
-use ltc_core::{InputError, ShadingFrame};
+use ltc_core::{AnyLight, InputError, ShadingFrame};
 
 use crate::RenderError;
+use crate::emitter::Emitter;
 use crate::gbuffer::SurfacePoint;
-use crate::light::Emitter;
 
 /// A back end that is ready to shade.
 pub(crate) trait Shade {
@@ -35,9 +35,19 @@ impl Local {
         Ok(Self { frame, position: point.position, wo: above.normalize_or(DVec3::Z) })
     }
 
-    /// A light's corners, seen from the point.
-    pub fn corners(&self, light: &Emitter) -> [DVec3; 4] {
-        light.corners.map(|corner| self.frame.shading_from_world(corner - self.position))
+    /// A point of the world, seen from here.
+    pub fn point(&self, world: DVec3) -> DVec3 {
+        self.frame.shading_from_world(world - self.position)
+    }
+
+    /// A direction of the world, seen from here.
+    pub fn direction(&self, world: DVec3) -> DVec3 {
+        self.frame.shading_from_world(world)
+    }
+
+    /// A light, seen from here.
+    pub fn light(&self, light: &Emitter) -> AnyLight {
+        light.moved(|p| self.point(p), |v| self.direction(v))
     }
 }
 

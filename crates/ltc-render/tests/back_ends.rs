@@ -59,6 +59,14 @@ fn scene() -> Scene {
     .unwrap()
 }
 
+/// The scene's first light.
+fn rectangle(scene: &mut Scene) -> &mut ltc_render::Rectangle {
+    match &mut scene.lights[0] {
+        ltc_render::Light::Rectangle(light) => light,
+        other => panic!("{other:?}"),
+    }
+}
+
 fn largest_difference(a: &Image, b: &Image) -> f32 {
     let (a, b) = (a.pixels().as_flattened(), b.pixels().as_flattened());
     assert_eq!(a.len(), b.len());
@@ -88,7 +96,7 @@ fn the_gpu_paints_what_the_cpu_paints() {
 
     // The control: a light that is a hundredth brighter is seen.
     let mut brighter = scene();
-    let ltc_render::Light::Rectangle(light) = &mut brighter.lights[0];
+    let light = rectangle(&mut brighter);
     light.intensity *= 1.01;
     let brighter = both.render(&brighter, Backend::Cpu, &options);
     assert!(largest_difference(&gpu.image, &brighter.image) > TOLERANCE);
@@ -119,7 +127,7 @@ fn diffuse_light_is_that_of_the_reference() {
     // The control: the light seen from its other side is another picture.
     let truth = many.reference.image;
     let mut turned = matt.clone();
-    let ltc_render::Light::Rectangle(light) = &mut turned.lights[0];
+    let light = rectangle(&mut turned);
     light.half_u = light.half_u.map(|u| u.map(|x| -x));
     let turned = both.render(&turned, Backend::Cpu, &RenderOptions::default());
     assert!(largest_difference(&turned.image, &truth) > 0.1);

@@ -151,7 +151,7 @@ fn check_sizes(gpu: &Gpu, batch: &Batch<'_>) -> Result<(), GpuError> {
     Ok(())
 }
 
-fn read_back(gpu: &Gpu, source: &Buffer) -> Result<Vec<u32>, GpuError> {
+pub(crate) fn read_back(gpu: &Gpu, source: &Buffer) -> Result<Vec<u32>, GpuError> {
     let device = gpu.device();
     let staging = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("ltc read-back"),

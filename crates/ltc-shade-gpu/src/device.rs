@@ -15,8 +15,21 @@ pub enum Filtering {
     #[default]
     Exact,
     /// By the texture unit, which rounds weights to about 8 bits on hardware. Fewer fetches: 3 instead of 12 for the
-    /// isotropic table, 6 instead of 48 for the anisotropic. Needs `FLOAT32_FILTERABLE`.
+    /// isotropic table, 6 instead of 48 for the anisotropic. Needs `FLOAT32_FILTERABLE` for [`Texels::F32`].
     Hardware,
+    /// By the shader, in full `f32`, out of a storage buffer: for devices without float textures.
+    Buffer,
+}
+
+/// The numbers of a table on the device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Texels {
+    /// 32 bits. Filtering them takes `FLOAT32_FILTERABLE`.
+    #[default]
+    F32,
+    /// 16 bits: half the memory and traffic, filtered by every device, with eleven bits of each entry (`docs/gpu.md` has
+    /// what that costs).
+    F16,
 }
 
 /// How to choose and use a device.
@@ -26,6 +39,10 @@ pub struct GpuOptions {
     pub software_only: bool,
     /// How tables are interpolated.
     pub filtering: Filtering,
+    /// The numbers of tables.
+    pub texels: Texels,
+    /// The one back end to look at, as in `WGPU_BACKEND`, which is not asked then.
+    pub backend: Option<&'static str>,
 }
 
 /// What a device says about itself.
@@ -56,6 +73,7 @@ pub struct Gpu {
     queue: wgpu::Queue,
     info: GpuInfo,
     filtering: Filtering,
+    texels: Texels,
 }
 
 impl Gpu {
@@ -67,7 +85,10 @@ impl Gpu {
     /// [`GpuError::NoAdapter`] with what was tried, [`GpuError::UnknownBackend`], and [`GpuError::NotFilterable`]
     /// for [`Filtering::Hardware`] on a device without it.
     pub fn new(options: GpuOptions) -> Result<Self, GpuError> {
-        let backends = backends()?;
+        let backends = match options.backend {
+            Some(name) => named(name)?,
+            None => backends()?,
+        };
         let descriptor = InstanceDescriptor::new_without_display_handle_from_env();
         let instance = Instance::new(InstanceDescriptor { backends, ..descriptor });
         let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
@@ -92,7 +113,8 @@ impl Gpu {
             return Err(GpuError::device("it has no compute shaders"));
         }
         let filterable = adapter.features() & Features::FLOAT32_FILTERABLE;
-        if options.filtering == Filtering::Hardware && filterable.is_empty() {
+        let filters_f32 = options.filtering == Filtering::Hardware && options.texels == Texels::F32;
+        if filters_f32 && filterable.is_empty() {
             return Err(GpuError::NotFilterable { device: info.to_string() });
         }
         let descriptor = wgpu::DeviceDescriptor {
@@ -103,7 +125,7 @@ impl Gpu {
         };
         let (device, queue) =
             pollster::block_on(adapter.request_device(&descriptor)).map_err(GpuError::device)?;
-        Ok(Self { device, queue, info, filtering: options.filtering })
+        Ok(Self { device, queue, info, filtering: options.filtering, texels: options.texels })
     }
 
     /// Name, back end and driver.
@@ -114,6 +136,11 @@ impl Gpu {
     /// How tables are interpolated.
     pub fn filtering(&self) -> Filtering {
         self.filtering
+    }
+
+    /// The numbers of tables.
+    pub fn texels(&self) -> Texels {
+        self.texels
     }
 
     pub(crate) fn device(&self) -> &wgpu::Device {
@@ -143,11 +170,13 @@ impl Gpu {
 fn backends() -> Result<Backends, GpuError> {
     match std::env::var("WGPU_BACKEND") {
         Err(_) => Ok(Backends::all()),
-        Ok(value) => {
-            let chosen = Backends::from_comma_list(&value);
-            if chosen.is_empty() { Err(GpuError::UnknownBackend { value }) } else { Ok(chosen) }
-        }
+        Ok(value) => named(&value),
     }
+}
+
+fn named(list: &str) -> Result<Backends, GpuError> {
+    let chosen = Backends::from_comma_list(list);
+    if chosen.is_empty() { Err(GpuError::UnknownBackend { value: list.to_owned() }) } else { Ok(chosen) }
 }
 
 /// The names of those that were compiled in; of all, where none was.

@@ -39,6 +39,14 @@ pub enum GpuError {
         /// What the device has.
         limit: u32,
     },
+    /// A table cannot be held in the numbers asked for.
+    #[error("the table does not survive as {texels}: {reason}")]
+    TableTexels {
+        /// Which numbers.
+        texels: &'static str,
+        /// What is lost.
+        reason: String,
+    },
     /// A table's axis is spaced in a way that the shaders do not know.
     #[error("the shaders know the mapping {mapping} for theta only, not for {quantity}")]
     UnsupportedAxis {

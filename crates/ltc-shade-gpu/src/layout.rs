@@ -25,16 +25,17 @@ pub(crate) struct AxesUniform {
     pub lambda: AxisUniform,
 }
 
-/// `PolygonJob`.
+/// `IntegrateJob`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct PolygonLayout {
+pub(crate) struct IntegrateLayout {
     pub m0: [f32; 3],
-    pub two_sided: u32,
+    pub unused_0: u32,
     pub m1: [f32; 3],
-    pub first_vertex: u32,
+    pub unused_1: u32,
     pub m2: [f32; 3],
-    pub vertex_count: u32,
+    pub unused_2: u32,
+    pub light: LightLayout,
 }
 
 /// `LookupJob`.
@@ -66,41 +67,74 @@ pub(crate) struct SurfaceLayout {
     pub unused_1: f32,
 }
 
-/// `RectLight`.
+/// `LightRecord`: what `a` to `d` hold depends on the kind.
+///
+/// | kind | a | a.w | b | c | d |
+/// |---|---|---|---|---|---|
+/// | quad | corner | | corner | corner | corner |
+/// | polygon | first vertex, count (as bits) | | | | |
+/// | line, with caps or not | end | radius | end | | |
+/// | strip | end | width | end | normal | |
+/// | cylinder | end | radius | end | | |
+/// | disk | centre | radius | normal | | |
+/// | ellipse | centre | | half-axis | half-axis | |
+/// | sphere | centre | radius | | | |
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct LightLayout {
+    pub a: [f32; 4],
+    pub b: [f32; 4],
+    pub c: [f32; 4],
+    pub d: [f32; 4],
+    pub radiance: [f32; 3],
+    pub bits: u32,
+}
+
+/// `ForwardUniform`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct LightLayout {
-    pub corner_0: [f32; 3],
-    pub two_sided: u32,
-    pub corner_1: [f32; 3],
-    pub unused_0: f32,
-    pub corner_2: [f32; 3],
-    pub unused_1: f32,
-    pub corner_3: [f32; 3],
-    pub unused_2: f32,
-    pub radiance: [f32; 3],
-    pub unused_3: f32,
+pub(crate) struct ForwardLayout {
+    pub clip_from_world: [[f32; 4]; 4],
+    pub eye: [f32; 3],
+    pub light_count: u32,
+    pub f0: [f32; 3],
+    pub f90: f32,
+    pub albedo: [f32; 3],
+    pub isotropic: u32,
+    pub alpha_x: f32,
+    pub alpha_y: f32,
+    pub unused: [u32; 2],
 }
 
 const _: () = {
+    assert!(size_of::<ForwardLayout>() == 128);
     assert!(size_of::<AxesUniform>() == 64);
-    assert!(size_of::<PolygonLayout>() == 48);
+    assert!(size_of::<IntegrateLayout>() == 128);
     assert!(size_of::<LookupLayout>() == 32);
     assert!(size_of::<SurfaceLayout>() == 96);
     assert!(size_of::<LightLayout>() == 80);
 };
 
+/// What stands for a mapping in a shader; the WGSL constants are generated from it.
+pub(crate) fn mapping_code(mapping: Mapping) -> u32 {
+    match mapping {
+        Mapping::Linear => 0,
+        Mapping::Sqrt => 1,
+        Mapping::SqrtOneMinusCos => 2,
+        Mapping::HalfTangent => 3,
+    }
+}
+
 impl AxisUniform {
     fn of(axis: &Axis) -> Self {
         let [low, high] = axis.domain.map(|value| axis.mapping.coordinate(value));
         let last = (axis.len - 1) as f64;
-        let mapping = match axis.mapping {
-            Mapping::Linear => 0,
-            Mapping::Sqrt => 1,
-            Mapping::SqrtOneMinusCos => 2,
-            Mapping::HalfTangent => 3,
-        };
-        Self { low: low as f32, scale: (last / (high - low)) as f32, last: last as f32, mapping }
+        Self {
+            low: low as f32,
+            scale: (last / (high - low)) as f32,
+            last: last as f32,
+            mapping: mapping_code(axis.mapping),
+        }
     }
 }
 

@@ -2,11 +2,11 @@
 //! deferred shading.
 //!
 //! [`Gpu`] opens a device: hardware where there is one, a software driver otherwise. [`TableTextures`] holds a table there.
-//! [`Lookups`], [`Polygons`] and [`Shader`] are compute pipelines over it. Conventions and units are those of
+//! [`Lookups`], [`Lights`] and [`Shader`] are compute pipelines over it, [`Forward`] shades triangles as they are drawn. Conventions and units are those of
 //! [`ltc_core`]; everything on the device is `f32`.
 //!
 //! The WGSL comes in [`modules`]: pure functions that know no bindings, and thin entry points that hold them. A program is
-//! their concatenation.
+//! their concatenation; [`ShaderRequest`] gives the functions alone, just those asked for.
 //!
 //! # What is guaranteed
 //! - Inputs are checked here, on the host: a NaN, an infinity, a singular matrix or an impossible width is an
@@ -31,20 +31,29 @@
 //! ```
 
 mod compute;
+mod constants;
 mod device;
 mod error;
+mod forward;
+#[cfg(test)]
+mod function_tests;
 mod integrate;
 mod layout;
+mod light;
 mod lookup;
 pub mod modules;
+mod request;
 mod shade;
 mod surface;
 mod table_textures;
 
-pub use device::{Filtering, Gpu, GpuInfo, GpuOptions};
+pub use device::{Filtering, Gpu, GpuInfo, GpuOptions, Texels};
 pub use error::GpuError;
-pub use integrate::{PolygonJob, Polygons};
+pub use forward::{Forward, ForwardMaterial, ForwardVertex, ForwardView};
+pub use integrate::{LightJob, Lights, PolygonJob, Polygons};
+pub use light::{AreaLight, LightShape};
 pub use lookup::{LookupResult, Lookups};
+pub use request::{Feature, LightKind, ShaderRequest, UnknownName};
 pub use shade::Shader;
-pub use surface::{RectLight, SurfacePoint};
+pub use surface::SurfacePoint;
 pub use table_textures::{TableTextures, Tables};

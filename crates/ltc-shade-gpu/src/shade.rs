@@ -1,13 +1,12 @@
 //! Deferred shading.
 
-use bytemuck::Zeroable;
 use wgpu::BindGroupLayout;
 
 use crate::compute::{Batch, Kernel, compile};
-use crate::layout::LightLayout;
+use crate::light::EncodedLights;
 use crate::modules::Program;
 use crate::table_textures::{bind_group, bind_group_layout};
-use crate::{Gpu, GpuError, RectLight, SurfacePoint, Tables};
+use crate::{AreaLight, Gpu, GpuError, SurfacePoint, Tables};
 
 /// Points that go to the device at once: 12 MiB of G-buffer.
 const CHUNK: usize = 1 << 17;
@@ -32,7 +31,7 @@ impl Shader {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let module = compile(gpu, Program::Shade(gpu.filtering()))?;
         let tables = bind_group_layout(gpu)?;
-        Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(&tables), 2)?, tables })
+        Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(&tables), 3)?, tables })
     }
 
     /// Radiance towards the eye of each point, linear RGB, in the unit of the lights' radiance.
@@ -45,16 +44,11 @@ impl Shader {
         gpu: &Gpu,
         tables: Tables<'_>,
         points: &[SurfacePoint],
-        lights: &[RectLight],
+        lights: &[AreaLight],
     ) -> Result<Vec<[f32; 3]>, GpuError> {
-        let mut light_buffer =
-            lights.iter().enumerate().map(|(i, light)| light.encode(i)).collect::<Result<Vec<_>, _>>()?;
+        let EncodedLights { records: light_buffer, vertices } = EncodedLights::of(lights)?;
         let point_buffer =
             points.iter().enumerate().map(|(i, p)| p.encode(i, tables)).collect::<Result<Vec<_>, _>>()?;
-        if lights.is_empty() {
-            // A buffer cannot be empty; the count says that there is no light in it.
-            light_buffer.push(LightLayout::zeroed());
-        }
         let bound = bind_group(gpu, &self.tables, tables)?;
         let mut radiance = Vec::with_capacity(points.len());
         for chunk in point_buffer.chunks(CHUNK) {
@@ -63,7 +57,11 @@ impl Shader {
                 first: radiance.len(),
                 items: chunk.len(),
                 counts: [chunk.len() as u32, lights.len() as u32, 0, 0],
-                inputs: &[bytemuck::cast_slice(chunk), bytemuck::cast_slice(&light_buffer)],
+                inputs: &[
+                    bytemuck::cast_slice(chunk),
+                    bytemuck::cast_slice(&light_buffer),
+                    bytemuck::cast_slice(&vertices),
+                ],
                 floats_each: 4,
                 tables: Some(&bound),
             };

@@ -1,13 +1,12 @@
-//! What is shaded, and by which lights.
+//! What is shaded.
 
 use glam::Vec3;
 use ltc_core::{Alpha, InputError, Vector, check_range};
 
-use crate::layout::{LightLayout, SurfaceLayout};
+use crate::layout::SurfaceLayout;
 use crate::{GpuError, Tables};
 
 const POINT: &str = "point";
-const LIGHT: &str = "light";
 
 /// A visible surface point with its material: one entry of a G-buffer. World space, any length unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,18 +32,6 @@ pub struct SurfacePoint {
     pub f90: f32,
     /// Diffuse (Lambert) albedo, linear RGB, in [0, 1].
     pub albedo: Vec3,
-}
-
-/// A flat rectangular light (any flat quad will do) that emits the same radiance in all directions. World space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RectLight {
-    /// Counter-clockwise seen from the emitting side.
-    pub corners: [Vec3; 4],
-    /// Emitted radiance, linear RGB, in W/(m²·sr) or nits: what is shaded comes out in the same unit. This is the
-    /// intensity of the light as seen, whatever its size; its power grows with its area.
-    pub radiance: Vec3,
-    /// Whether the back emits, too.
-    pub two_sided: bool,
 }
 
 impl SurfacePoint {
@@ -89,35 +76,5 @@ impl SurfacePoint {
             }
         }
         Alpha::new(f64::from(self.alpha_x), f64::from(self.alpha_y))
-    }
-}
-
-impl RectLight {
-    pub(crate) fn encode(&self, index: usize) -> Result<LightLayout, GpuError> {
-        self.check().map_err(GpuError::input(LIGHT, index))?;
-        let [corner_0, corner_1, corner_2, corner_3] = self.corners.map(|c| c.to_array());
-        Ok(LightLayout {
-            corner_0,
-            two_sided: u32::from(self.two_sided),
-            corner_1,
-            unused_0: 0.0,
-            corner_2,
-            unused_1: 0.0,
-            corner_3,
-            unused_2: 0.0,
-            radiance: self.radiance.to_array(),
-            unused_3: 0.0,
-        })
-    }
-
-    fn check(&self) -> Result<(), InputError> {
-        if !self.corners.iter().all(|c| c.is_finite()) {
-            return Err(InputError::NotFinite { name: "corner" });
-        }
-        for channel in self.radiance.to_array() {
-            // A quarter of the largest f32: the sum over lights and lobes is to stay finite.
-            check_range("radiance", f64::from(channel), 0.0, f64::from(f32::MAX) / 4.0)?;
-        }
-        Ok(())
     }
 }

@@ -1,19 +1,41 @@
 //! Tables as textures.
 
 use bytemuck::Zeroable;
-use ltc_table::{Kind, Table, ktx2};
+use ltc_table::{Kind, Precision, Table, ktx2};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
 use wgpu::{BindGroup, BindGroupLayout, ShaderStages, Texture, TextureDimension, TextureViewDimension};
 
 use crate::layout::AxesUniform;
-use crate::{Filtering, Gpu, GpuError};
+use crate::{Filtering, Gpu, GpuError, Texels};
 
-/// A table on the device: three RGBA32F groups in the layout of [`ltc_table::ktx2`], and its axes.
+/// A table on the device: three RGBA groups in the layout of [`ltc_table::ktx2`], and its axes.
 #[derive(Debug)]
 pub struct TableTextures {
     kind: Kind,
     axes: AxesUniform,
-    texture: Texture,
+    texels: Storage,
+}
+
+/// Where the texels are.
+#[derive(Debug)]
+enum Storage {
+    Texture(Texture),
+    Buffer(wgpu::Buffer),
+}
+
+/// What is bound of a table.
+enum View<'a> {
+    Texture(wgpu::TextureView),
+    Buffer(&'a wgpu::Buffer),
+}
+
+impl View<'_> {
+    fn binding(&self) -> wgpu::BindingResource<'_> {
+        match self {
+            Self::Texture(view) => wgpu::BindingResource::TextureView(view),
+            Self::Buffer(buffer) => buffer.as_entire_binding(),
+        }
+    }
 }
 
 /// The tables that a pass may look into. A missing one is an error only for whoever needs it.
@@ -26,18 +48,19 @@ pub struct Tables<'a> {
 }
 
 impl TableTextures {
-    /// Uploads a table of either kind, rounded to `f32`.
+    /// Uploads a table of either kind, rounded to the device's [`Texels`].
     ///
     /// # Errors
     /// [`GpuError::TableTooLarge`] when the device's textures are too small for it, [`GpuError::UnsupportedAxis`],
+    /// [`GpuError::TableTexels`] where 16 bits cannot hold it,
     /// [`GpuError::Device`].
     pub fn upload(gpu: &Gpu, table: &Table) -> Result<Self, GpuError> {
         let axes = AxesUniform::of(table)?;
         let size = extent(table);
         check_extent(gpu, table.kind(), size)?;
-        let texels: Vec<[f32; 4]> = ktx2::texels(table).iter().map(|t| t.map(|v| v as f32)).collect();
-        let texture = gpu.checked(|| Ok(create(gpu, table.kind(), size, &texels)))?;
-        Ok(Self { kind: table.kind(), axes, texture })
+        let bytes = texel_bytes(precision(gpu), table)?;
+        let texels = gpu.checked(|| Ok(create(gpu, table.kind(), size, &bytes)))?;
+        Ok(Self { kind: table.kind(), axes, texels })
     }
 
     /// Isotropic or anisotropic.
@@ -45,25 +68,57 @@ impl TableTextures {
         self.kind
     }
 
-    /// Bytes of texture memory.
+    /// Bytes of memory on the device.
     pub fn bytes(&self) -> u64 {
-        let size = self.texture.size();
-        u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers) * 16
+        match &self.texels {
+            Storage::Buffer(buffer) => buffer.size(),
+            Storage::Texture(texture) => {
+                let size = texture.size();
+                let count = size.width * size.height * size.depth_or_array_layers;
+                u64::from(count) * u64::from(texture.format().block_copy_size(None).unwrap_or(0))
+            }
+        }
     }
 
     /// What stands where no table was given: one texel, never looked at.
     fn placeholder(gpu: &Gpu, kind: Kind) -> Self {
         let size = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: ktx2::GROUPS as u32 };
-        let texels = [[0.0; 4]; ktx2::GROUPS];
-        Self { kind, axes: AxesUniform::zeroed(), texture: create(gpu, kind, size, &texels) }
+        let bytes = [0; 16 * ktx2::GROUPS];
+        let bytes = &bytes[..4 * precision(gpu).bytes() * ktx2::GROUPS];
+        Self { kind, axes: AxesUniform::zeroed(), texels: create(gpu, kind, size, bytes) }
     }
 
-    fn view(&self) -> wgpu::TextureView {
-        self.texture.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(view_dimension(self.kind)),
-            ..Default::default()
-        })
+    fn view(&self) -> View<'_> {
+        match &self.texels {
+            Storage::Buffer(buffer) => View::Buffer(buffer),
+            Storage::Texture(texture) => View::Texture(texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(view_dimension(self.kind)),
+                ..Default::default()
+            })),
+        }
     }
+}
+
+/// Storage buffers hold 32 bits.
+fn precision(gpu: &Gpu) -> Precision {
+    let texels = if gpu.filtering() == Filtering::Buffer { Texels::F32 } else { gpu.texels() };
+    match texels {
+        Texels::F32 => Precision::F32,
+        Texels::F16 => Precision::F16,
+    }
+}
+
+fn texel_bytes(precision: Precision, table: &Table) -> Result<Vec<u8>, GpuError> {
+    if precision == Precision::F16 {
+        let lost = |error: ltc_table::TableError| GpuError::TableTexels {
+            texels: precision.name(),
+            reason: error.to_string(),
+        };
+        table.rounded(precision).map_err(lost)?;
+    }
+    let mut bytes = Vec::new();
+    ktx2::texels(table).iter().flatten().for_each(|value| precision.put(*value, &mut bytes));
+    Ok(bytes)
 }
 
 fn extent(table: &Table) -> wgpu::Extent3d {
@@ -95,7 +150,12 @@ fn check_extent(gpu: &Gpu, kind: Kind, size: wgpu::Extent3d) -> Result<(), GpuEr
     Ok(())
 }
 
-fn create(gpu: &Gpu, kind: Kind, size: wgpu::Extent3d, texels: &[[f32; 4]]) -> Texture {
+fn create(gpu: &Gpu, kind: Kind, size: wgpu::Extent3d, bytes: &[u8]) -> Storage {
+    if gpu.filtering() == Filtering::Buffer {
+        let usage = wgpu::BufferUsages::STORAGE;
+        let descriptor = BufferInitDescriptor { label: Some("ltc table"), contents: bytes, usage };
+        return Storage::Buffer(gpu.device().create_buffer_init(&descriptor));
+    }
     let dimension = match kind {
         Kind::Isotropic => TextureDimension::D2,
         Kind::Anisotropic => TextureDimension::D3,
@@ -106,12 +166,15 @@ fn create(gpu: &Gpu, kind: Kind, size: wgpu::Extent3d, texels: &[[f32; 4]]) -> T
         mip_level_count: 1,
         sample_count: 1,
         dimension,
-        format: wgpu::TextureFormat::Rgba32Float,
+        format: match gpu.texels() {
+            Texels::F32 => wgpu::TextureFormat::Rgba32Float,
+            Texels::F16 => wgpu::TextureFormat::Rgba16Float,
+        },
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     };
-    let bytes = bytemuck::cast_slice(texels);
-    gpu.device().create_texture_with_data(gpu.queue(), &descriptor, TextureDataOrder::LayerMajor, bytes)
+    let order = TextureDataOrder::LayerMajor;
+    Storage::Texture(gpu.device().create_texture_with_data(gpu.queue(), &descriptor, order, bytes))
 }
 
 fn view_dimension(kind: Kind) -> TextureViewDimension {
@@ -126,7 +189,7 @@ pub(crate) fn bind_group_layout(gpu: &Gpu) -> Result<BindGroupLayout, GpuError> 
     let hardware = gpu.filtering() == Filtering::Hardware;
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
         binding,
-        visibility: ShaderStages::COMPUTE,
+        visibility: ShaderStages::COMPUTE | ShaderStages::FRAGMENT,
         ty,
         count: None,
     };
@@ -135,10 +198,17 @@ pub(crate) fn bind_group_layout(gpu: &Gpu) -> Result<BindGroupLayout, GpuError> 
         has_dynamic_offset: false,
         min_binding_size: None,
     };
-    let texture = |kind| wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: hardware },
-        view_dimension: view_dimension(kind),
-        multisampled: false,
+    let texture = |kind| match gpu.filtering() {
+        Filtering::Buffer => wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only: true },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        Filtering::Exact | Filtering::Hardware => wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: hardware },
+            view_dimension: view_dimension(kind),
+            multisampled: false,
+        },
     };
     let mut entries = vec![
         entry(0, uniform),
@@ -185,9 +255,9 @@ pub(crate) fn bind_group(
         });
         let mut resources = vec![
             axes_2d.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&view_2d),
+            view_2d.binding(),
             axes_4d.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&view_4d),
+            view_4d.binding(),
         ];
         if gpu.filtering() == Filtering::Hardware {
             resources.push(wgpu::BindingResource::Sampler(&sampler));

@@ -31,8 +31,9 @@ pub struct RefitConfig {
 }
 
 impl Default for RefitConfig {
-    /// One refit at a time on all cores, of at most 2 GiB and 4 hours of one core; 64 may wait. Shards of a second, and pieces
-    /// of at most 10 s of one core, far above those of any preset (0.3 s).
+    /// One refit at a time on all cores, of at most 2 GiB and 4 hours of one core; 64 may wait. Shards of a quarter of a
+    /// second, longer where keeping one takes long: a twentieth of the time goes to that. Pieces of at most 10 s of one core,
+    /// far above those of any preset (0.3 s).
     fn default() -> Self {
         Self {
             workers: 1,
@@ -40,7 +41,7 @@ impl Default for RefitConfig {
             queue: 64,
             limits: Limits { memory: 2 << 30, seconds: 4.0 * 3600.0 },
             piece_seconds: 10.0,
-            shard: Duration::from_secs(1),
+            shard: Duration::from_millis(250),
             lease: Duration::from_secs(30),
             program: program(),
         }

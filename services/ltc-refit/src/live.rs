@@ -33,11 +33,12 @@ struct State {
 }
 
 impl Live {
-    pub(crate) fn new(cost: &Cost) -> Self {
+    /// For a job that has come so far, which holds until the fit says more.
+    pub(crate) fn new(cost: &Cost, done: f64) -> Self {
         let state = State {
             forecast: Forecast::new(cost),
             stage: "",
-            outlook: Outlook { done: 0.0, stage_left: None, left: None },
+            outlook: Outlook { done, stage_left: None, left: None },
             tv: None,
             lobes: 0.0,
             stage_done: 0.0,

@@ -1,7 +1,8 @@
 //! Taking requests in.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::pin::Pin;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use ltc_store::{Blobs, Job, Jobs, Metadata, NewJob, StoreError};
 use serde_json::Value;
@@ -32,6 +33,9 @@ impl Ask {
     }
 }
 
+/// Something to do whenever a version was published.
+type Hook = Box<dyn Fn() -> Pin<Box<dyn Future<Output = ()> + Send>> + Send + Sync>;
+
 /// Takes requests in and runs them.
 #[derive(Clone)]
 pub struct Refits(pub(crate) Arc<Shared>);
@@ -43,6 +47,7 @@ pub(crate) struct Shared {
     pub(crate) jobs: Arc<dyn Jobs>,
     pub(crate) config: RefitConfig,
     pub(crate) counts: Counts,
+    pub(crate) published: OnceLock<Hook>,
     /// Of each worker that fits: lobes a second, and the mean total variation.
     pub(crate) at_work: Mutex<HashMap<String, (f64, Option<f64>)>>,
 }
@@ -55,8 +60,17 @@ impl Refits {
         jobs: Arc<dyn Jobs>,
         config: RefitConfig,
     ) -> Self {
-        let (counts, at_work) = (Counts::default(), Mutex::default());
-        Self(Arc::new(Shared { metadata, blobs, jobs, config, counts, at_work }))
+        let (counts, published, at_work) = (Counts::default(), OnceLock::new(), Mutex::default());
+        Self(Arc::new(Shared { metadata, blobs, jobs, config, counts, published, at_work }))
+    }
+
+    /// Does something whenever a refit has published a version and moved its alias, before the job is said to have succeeded:
+    /// whoever hears of that finds the version. The first call counts.
+    pub fn on_published<F>(&self, hook: impl Fn() -> F + Send + Sync + 'static)
+    where
+        F: Future<Output = ()> + Send + 'static,
+    {
+        self.0.published.get_or_init(|| Box::new(move || Box::pin(hook())));
     }
 
     /// How refits are run.

@@ -89,14 +89,18 @@ impl Run<'_> {
                 self.insist(|run| run.shared.keep(run.claim, &fitted)).await?
             }
         };
-        self.insist(|run| run.shared.point(run.claim, &version)).await
+        let outcome = self.insist(|run| run.shared.point(run.claim, &version)).await?;
+        if let Some(hook) = self.shared.published.get() {
+            hook().await;
+        }
+        Ok(outcome)
     }
 
     /// Fits, and reports while that goes on.
     async fn fit(&self, spec: FitSpec) -> Result<TableVersion, End> {
         let cost = Cost::of(&spec);
         self.shared.config.allows(&spec, &cost).map_err(|e| End::Failed(e.to_string()))?;
-        let live = Arc::new(Live::new(&cost));
+        let live = Arc::new(Live::new(&cost, self.claim.job.progress));
         let (blobs, runtime) = (Arc::clone(&self.shared.blobs), tokio::runtime::Handle::current());
         let checkpoints = Checkpoints::new(blobs, runtime, self.claim);
         let table = fitting::start(spec, checkpoints, Arc::clone(&live), &self.shared.config);

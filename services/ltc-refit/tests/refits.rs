@@ -82,10 +82,20 @@ async fn log_of(store: &dyn Jobs, id: &str) -> String {
 async fn a_refit_gives_the_version_that_the_fit_gives() {
     let store = MemoryStore::default();
     let refits = refits(&store);
+    let (told, at) = (Arc::new(std::sync::Mutex::new(Vec::new())), store.clone());
+    let hook = Arc::clone(&told);
+    refits.on_published(move || {
+        let (hook, at) = (Arc::clone(&hook), at.clone());
+        async move {
+            let seen = (at.aliases().await.unwrap().len(), at.jobs(1).await.unwrap()[0].state);
+            hook.lock().unwrap().push(seen);
+        }
+    });
     let workers = refits.start();
     let job = ask(&refits, Ask { alias: Some("latest".to_owned()), ..Ask::new(spec(50)) }).await;
     let job = ended(&store, &job.id).await;
     assert_eq!((job.state, job.version, job.error), (JobState::Succeeded, Some(1), None));
+    assert_eq!(*told.lock().unwrap(), [(1, JobState::Running)], "published, and not yet said to be");
     let version = store.version("small", 1).await.unwrap();
     assert_eq!(version.digest, digest_of(&spec(50)));
     let payload = store.get(BlobKind::Payload, &version.digest).await.unwrap();

@@ -84,6 +84,7 @@ pub async fn serve_until(
     tracing::info!(%address, "listening");
     on_ready(address);
     let chores = tokio::spawn(chores(state.clone()));
+    state.refresh_when_published();
     let workers = state.refits().start();
     loop {
         tokio::select! {

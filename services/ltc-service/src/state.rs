@@ -201,6 +201,22 @@ impl AppState {
         Ok(())
     }
 
+    /// From now on a version that a refit publishes is served before the refit is said to have succeeded.
+    pub(crate) fn refresh_when_published(&self) {
+        // The refits are part of the state, and must not keep it alive.
+        let state = Arc::downgrade(&self.0);
+        self.refits().on_published(move || {
+            let state = state.upgrade().map(Self);
+            async move {
+                if let Some(state) = state
+                    && let Err(error) = state.refresh().await
+                {
+                    tracing::warn!(%error, "a new version is served once the store can be read");
+                }
+            }
+        });
+    }
+
     /// Ends event streams and readiness: the service is about to stop.
     pub(crate) fn stop(&self) {
         self.0.stopping.send_replace(true);

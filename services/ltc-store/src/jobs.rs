@@ -145,7 +145,7 @@ pub enum Outcome {
 }
 
 /// Attempts without progress after which a job is given up: it kills whoever takes it.
-pub const MAX_BARREN: u32 = 25;
+pub const MAX_BARREN: u32 = 100;
 
 /// A durable queue of jobs. Every method is one transaction; what it acknowledged survives a kill.
 ///

@@ -2,9 +2,8 @@
 
 use anyhow::Result;
 use clap::{Args, ValueEnum};
-use ltc_core::AnyLight;
 use ltc_lines::{Answer, Integration};
-use ltc_shade_gpu::{Gpu, GpuOptions, PolygonJob, Polygons};
+use ltc_shade_gpu::{Gpu, GpuOptions, LightJob, LightShape, Lights};
 
 use crate::{json_lines, tables::Tables};
 
@@ -56,8 +55,8 @@ impl Integrate {
         );
         if self.backend == Backend::Gpu {
             let gpu = Gpu::new(GpuOptions::default())?;
-            let polygons = Polygons::new(&gpu)?;
-            return json_lines::run(|line| on_gpu(&gpu, &polygons, &Integration::parse(&catalogue, line)?));
+            let lights = Lights::new(&gpu)?;
+            return json_lines::run(|line| on_gpu(&gpu, &lights, &Integration::parse(&catalogue, line)?));
         }
         match self.precision {
             Precision::F32 => json_lines::run(|line| Integration::parse(&catalogue, line)?.on_cpu::<f32>()),
@@ -66,19 +65,13 @@ impl Integrate {
     }
 }
 
-fn on_gpu(gpu: &Gpu, polygons: &Polygons, job: &Integration) -> Result<Answer, String> {
-    let AnyLight::Polygon { vertices, sides } = &job.light else {
-        let name = job.light.name();
-        return Err(format!("--backend gpu has polygons alone, no {name} yet; --backend cpu has all"));
-    };
+fn on_gpu(gpu: &Gpu, lights: &Lights, job: &Integration) -> Result<Answer, String> {
     // What f64 refuses, NaN and degenerate matrices, is refused in the same words here.
     job.on_cpu::<f64>()?;
-    let vertices: Vec<[f32; 3]> = vertices.iter().map(|v| v.map(|x| x as f32)).collect();
-    let mut value = 0.0;
-    for (weight, m) in &job.lobes {
-        let job = PolygonJob { m: m.map(|x| x as f32), vertices: &vertices, sides: *sides };
-        let fraction = polygons.integrate(gpu, &[job]).map_err(|e| e.to_string())?;
-        value += weight * f64::from(fraction[0]);
-    }
+    let light = LightShape::from(&job.light);
+    let job_of = |(_, m): &(f64, [f64; 9])| LightJob { m: m.map(|x| x as f32), light: light.clone() };
+    let jobs: Vec<_> = job.lobes.iter().map(job_of).collect();
+    let fractions = lights.integrate(gpu, &jobs).map_err(|e| e.to_string())?;
+    let value = job.lobes.iter().zip(fractions).map(|((weight, _), f)| weight * f64::from(f)).sum();
     Ok(Answer { value, precision: "f32" })
 }

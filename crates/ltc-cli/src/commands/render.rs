@@ -11,7 +11,7 @@ use ltc_render::{
 use crate::progress::Reporter;
 use crate::tables::Tables;
 
-/// Renders a scene of spheres and planes under rectangular lights to a PNG or EXR file.
+/// Renders a scene of spheres and planes under area lights to a PNG or EXR file.
 ///
 /// examples/scenes/README.md documents the scene format. There are no shadows: every back end computes unoccluded direct
 /// light.

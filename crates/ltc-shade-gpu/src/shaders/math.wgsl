@@ -39,3 +39,8 @@ fn ltc_atan2(y: f32, x: f32) -> f32 {
     angle = select(angle, LTC_PI - angle, x < 0.0);
     return select(angle, -angle, y < 0.0);
 }
+
+// The largest power of two that is not above the magnitude; 0 below the smallest normal number. Scaling by it rounds nothing.
+fn ltc_floor_power_of_two(x: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(x) & 0x7f800000u);
+}

@@ -1,81 +1,16 @@
-// Entry point: deferred shading. One invocation a surface point, one lookup for all of its lights. Needs: frame, polygon,
-// fresnel, tables_exact or tables_hardware.
-
-struct SurfacePoint {
-    position: vec3f,
-    alpha_x: f32,
-    normal: vec3f,
-    alpha_y: f32,
-    tangent: vec3f,
-    isotropic: u32,
-    // Unit, towards the eye, in world space.
-    wo: vec3f,
-    f90: f32,
-    f0: vec3f,
-    unused_0: f32,
-    albedo: vec3f,
-    unused_1: f32,
-}
-
-struct RectLight {
-    corner_0: vec3f,
-    two_sided: u32,
-    corner_1: vec3f,
-    unused_0: f32,
-    corner_2: vec3f,
-    unused_1: f32,
-    corner_3: vec3f,
-    unused_2: f32,
-    radiance: vec3f,
-    unused_3: f32,
-}
+// Entry point: deferred shading of a G-buffer, one invocation a surface point. Needs: shade.
 
 // Numbers of points and of lights.
 @group(1) @binding(0) var<uniform> counts: vec4u;
 @group(1) @binding(1) var<storage, read> points: array<SurfacePoint>;
-@group(1) @binding(2) var<storage, read> lights: array<RectLight>;
-@group(1) @binding(3) var<storage, read_write> radiance: array<vec4f>;
-
-// The view direction in the shading frame, lifted onto the horizon where rounding put it below.
-fn view_in_frame(frame: LtcFrame, wo: vec3f) -> vec3f {
-    let v = ltc_shading_from_world(frame, wo);
-    let unit = ltc_unit_or_zero(vec3f(v.xy, max(v.z, 0.0)));
-    return select(vec3f(0.0, 0.0, 1.0), unit, dot(unit, unit) > 0.5);
-}
-
-fn shade(point: SurfacePoint) -> vec3f {
-    let frame = ltc_frame(point.normal, point.tangent);
-    let wo = view_in_frame(frame, point.wo);
-    var found: LtcLookup;
-    if point.isotropic != 0u {
-        found = lookup_isotropic(wo, point.alpha_x);
-    } else {
-        found = lookup_anisotropic(wo, point.alpha_x, point.alpha_y);
-    }
-    let specular_lobe = ltc_inverse(found.m);
-    let diffuse_lobe = ltc_cosine();
-    let specular = ltc_reflectance(point.f0, point.f90, found.magnitude, found.fresnel);
-    var sum = vec3f(0.0);
-    for (var i = 0u; i < counts.y; i++) {
-        let light = lights[i];
-        let two_sided = light.two_sided != 0u;
-        let v0 = ltc_shading_from_world(frame, light.corner_0 - point.position);
-        let v1 = ltc_shading_from_world(frame, light.corner_1 - point.position);
-        let v2 = ltc_shading_from_world(frame, light.corner_2 - point.position);
-        let v3 = ltc_shading_from_world(frame, light.corner_3 - point.position);
-        var reflected = specular * ltc_quad(specular_lobe, v0, v1, v2, v3, two_sided);
-        if any(point.albedo > vec3f(0.0)) {
-            reflected += point.albedo * ltc_quad(diffuse_lobe, v0, v1, v2, v3, two_sided);
-        }
-        sum += light.radiance * reflected;
-    }
-    return sum;
-}
+@group(1) @binding(2) var<storage, read> lights: array<LightRecord>;
+@group(1) @binding(3) var<storage, read> light_vertices: array<vec4f>;
+@group(1) @binding(4) var<storage, read_write> radiance: array<vec4f>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= counts.x {
         return;
     }
-    radiance[id.x] = vec4f(shade(points[id.x]), 0.0);
+    radiance[id.x] = vec4f(shade(points[id.x], counts.y), 0.0);
 }

@@ -1,4 +1,4 @@
-// What all tables share: axes, texels, the result of a lookup. No bindings. Needs: math.
+// What all tables share: axes, texels, the result of a lookup. No bindings. Needs: math, constants.
 
 // How an axis spaces its nodes; filled from the table, see `AxisUniform` in Rust.
 struct LtcAxis {
@@ -18,11 +18,6 @@ struct LtcAxes {
     alpha: LtcAxis,
     lambda: LtcAxis,
 }
-
-const LTC_LINEAR: u32 = 0u;
-const LTC_SQRT: u32 = 1u;
-const LTC_SQRT_ONE_MINUS_COS: u32 = 2u;
-const LTC_HALF_TANGENT: u32 = 3u;
 
 // A place along an axis: between nodes `cell` and `cell + 1`, `t` of the way.
 struct LtcPlace {
@@ -96,4 +91,14 @@ fn ltc_regular(texels: LtcTexels) -> bool {
 // The magnitude and Fresnel term of `texels` with the matrix of `other`.
 fn ltc_with_matrix(texels: LtcTexels, other: LtcTexels) -> LtcTexels {
     return LtcTexels(other.g0, other.g1, vec4f(other.g2.x, texels.g2.yzw));
+}
+
+// The weight of the upper or lower node of a place.
+fn ltc_weight(place: LtcPlace, upper: u32) -> f32 {
+    return select(1.0 - place.t, place.t, upper == 1u);
+}
+
+// The place in texels, for a filtering fetch.
+fn ltc_texel(place: LtcPlace) -> f32 {
+    return f32(place.cell) + place.t + 0.5;
 }

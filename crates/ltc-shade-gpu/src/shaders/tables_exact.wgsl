@@ -1,4 +1,4 @@
-// Bindings of the tables, interpolated by hand. Needs: isotropic, anisotropic, fetch_exact.
+// Bindings of the tables, interpolated by hand. Needs: isotropic, anisotropic, fetch_exact_isotropic, fetch_exact_anisotropic.
 
 @group(0) @binding(0) var<uniform> isotropic_axes: LtcAxes;
 @group(0) @binding(1) var isotropic_table: texture_2d_array<f32>;

@@ -1,8 +1,10 @@
 //! Deferred shading: GPU against `ltc_core` and `ltc_table` in f64.
 
 use glam::{DVec3, Vec3};
-use ltc_core::{Light as _, Ltc, Matrix, Polygon, ShadingFrame, Sides, reflectance};
-use ltc_shade_gpu::{Filtering, Gpu, GpuError, RectLight, Shader, SurfacePoint, TableTextures, Tables};
+use ltc_core::{Horizon, Ltc, Matrix, ShadingFrame, Sides, reflectance};
+use ltc_shade_gpu::{
+    AreaLight, Filtering, Gpu, GpuError, LightShape, Shader, SurfacePoint, TableTextures, Tables,
+};
 use ltc_table::{Mapping, Query, Table};
 
 use crate::support::{gpu, random};
@@ -22,7 +24,7 @@ impl Both {
         Self { isotropic: tables::isotropic(), anisotropic }
     }
 
-    fn shade(&self, gpu: &Gpu, points: &[SurfacePoint], lights: &[RectLight]) -> Vec<[f32; 3]> {
+    fn shade(&self, gpu: &Gpu, points: &[SurfacePoint], lights: &[AreaLight]) -> Vec<[f32; 3]> {
         let isotropic = TableTextures::upload(gpu, &self.isotropic).unwrap();
         let anisotropic = TableTextures::upload(gpu, &self.anisotropic).unwrap();
         let tables = Tables { isotropic: Some(&isotropic), anisotropic: Some(&anisotropic) };
@@ -30,7 +32,7 @@ impl Both {
     }
 
     /// The same in f64 on the CPU.
-    fn expected(&self, point: &SurfacePoint, lights: &[RectLight]) -> DVec3 {
+    fn expected(&self, point: &SurfacePoint, lights: &[AreaLight]) -> DVec3 {
         let frame = ShadingFrame::<f64>::new(point.normal.as_dvec3(), point.tangent.as_dvec3()).unwrap();
         let wo = frame.shading_from_world(point.wo.as_dvec3());
         let query = Query {
@@ -49,12 +51,13 @@ impl Both {
             .map(|f0| reflectance(f0, f64::from(point.f90), found.magnitude, found.fresnel));
         let mut sum = DVec3::ZERO;
         for light in lights {
-            let corners =
-                light.corners.map(|c| frame.shading_from_world(c.as_dvec3() - point.position.as_dvec3()));
-            let sides = if light.two_sided { Sides::Two } else { Sides::One };
-            let polygon = Polygon::<f64>::new(&corners, sides).unwrap();
-            let reflected = DVec3::from_array(specular) * polygon.integrate(&lobe)
-                + point.albedo.as_dvec3() * polygon.irradiance();
+            let light_here = seen_from(&light.shape, |v, is_point| {
+                let from = if is_point { point.position.as_dvec3() } else { DVec3::ZERO };
+                frame.shading_from_world(v.as_dvec3() - from).as_vec3()
+            });
+            let fraction = |lobe: &Ltc<f64>| light_here.integrate(lobe, Horizon::BOTH).unwrap();
+            let reflected = DVec3::from_array(specular) * fraction(&lobe)
+                + point.albedo.as_dvec3() * fraction(&Ltc::cosine());
             sum += light.radiance.as_dvec3() * reflected;
         }
         sum
@@ -68,6 +71,31 @@ fn direction(rng: &mut impl FnMut() -> f64) -> Vec3 {
             return v.as_vec3();
         }
     }
+}
+
+/// The shape with its points and directions moved; the closure learns which it has.
+fn seen_from(shape: &LightShape, to: impl Fn(Vec3, bool) -> Vec3) -> LightShape {
+    let mut shape = shape.clone();
+    match &mut shape {
+        LightShape::Quad { corners, .. } => corners.iter_mut().for_each(|p| *p = to(*p, true)),
+        LightShape::Polygon { vertices, .. } => vertices.iter_mut().for_each(|p| *p = to(*p, true)),
+        LightShape::Line { p0, p1, .. } | LightShape::Cylinder { p0, p1, .. } => {
+            [*p0, *p1] = [*p0, *p1].map(|p| to(p, true));
+        }
+        LightShape::Strip { p0, p1, normal, .. } => {
+            [*p0, *p1] = [*p0, *p1].map(|p| to(p, true));
+            *normal = to(*normal, false);
+        }
+        LightShape::Disk { center, normal, .. } => {
+            (*center, *normal) = (to(*center, true), to(*normal, false));
+        }
+        LightShape::Ellipse { center, axis_u, axis_v, .. } => {
+            *center = to(*center, true);
+            [*axis_u, *axis_v] = [*axis_u, *axis_v].map(|v| to(v, false));
+        }
+        LightShape::Sphere { center, .. } => *center = to(*center, true),
+    }
+    shape
 }
 
 fn unit_color(rng: &mut impl FnMut() -> f64) -> Vec3 {
@@ -105,24 +133,33 @@ fn points(count: usize, rng: &mut impl FnMut() -> f64) -> Vec<SurfacePoint> {
         .collect()
 }
 
-fn lights(count: usize, rng: &mut impl FnMut() -> f64) -> Vec<RectLight> {
-    (0..count)
-        .map(|i| {
-            let (centre, u, v) = (direction(rng) * 6.0, direction(rng) * 4.0, direction(rng) * 4.0);
-            RectLight {
-                corners: [centre - u - v, centre + u - v, centre + u + v, centre - u + v],
-                radiance: unit_color(rng),
-                two_sided: i % 2 == 0,
-            }
-        })
-        .collect()
+/// Lights of all shapes in turn.
+fn lights(count: usize, rng: &mut impl FnMut() -> f64) -> Vec<AreaLight> {
+    (0..count).map(|i| AreaLight { shape: shape(i, rng), radiance: unit_color(rng) }).collect()
+}
+
+fn shape(i: usize, rng: &mut impl FnMut() -> f64) -> LightShape {
+    let (center, u, v) = (direction(rng) * 6.0, direction(rng) * 4.0, direction(rng) * 4.0);
+    let sides = if i.is_multiple_of(2) { Sides::Two } else { Sides::One };
+    let corners = [center - u - v, center + u - v, center + u + v, center - u + v];
+    let (p0, p1, caps) = (center - u, center + u, i.is_multiple_of(2));
+    match i % 8 {
+        0 => LightShape::Quad { corners, sides },
+        1 => LightShape::Polygon { vertices: corners.to_vec(), sides },
+        2 => LightShape::Line { p0, p1, radius: 0.01, caps },
+        3 => LightShape::Strip { p0, p1, width: 0.02, normal: v, sides },
+        4 => LightShape::Cylinder { p0, p1, radius: 0.2, caps },
+        5 => LightShape::Disk { center, normal: u, radius: 0.7, sides },
+        6 => LightShape::Ellipse { center, axis_u: u, axis_v: v, sides },
+        _ => LightShape::Sphere { center, radius: 0.6 },
+    }
 }
 
 /// The largest difference of a channel, and how many points are lit.
 fn largest_error(
     both: &Both,
     points: &[SurfacePoint],
-    lights: &[RectLight],
+    lights: &[AreaLight],
     radiance: &[[f32; 3]],
 ) -> (f64, usize) {
     assert_eq!(points.len(), radiance.len());
@@ -227,10 +264,12 @@ fn lights_below_the_horizon_add_exactly_nothing() {
         point.normal = Vec3::Y;
         point.wo.y = point.wo.y.abs();
     }
-    let below = |y: f32| RectLight {
-        corners: [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, z]| Vec3::new(x, y, z)),
+    let below = |y: f32| AreaLight {
+        shape: LightShape::Quad {
+            corners: [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, z]| Vec3::new(x, y, z)),
+            sides: Sides::Two,
+        },
         radiance: Vec3::splat(1e6),
-        two_sided: true,
     };
     let dark = both.shade(&gpu, &points, &[below(-1e-3), below(-2.0)]);
     assert!(dark.iter().all(|r| *r == [0.0; 3]));
@@ -267,7 +306,7 @@ fn invalid_points_and_lights_are_refused_by_index() {
     let shader = Shader::new(&gpu).unwrap();
     let mut rng = random(4);
     let point = points(1, &mut rng)[0];
-    let light = lights(1, &mut rng)[0];
+    let light = lights(1, &mut rng).remove(0);
     for bad in [
         SurfacePoint { position: Vec3::NAN, ..point },
         SurfacePoint { normal: Vec3::ZERO, ..point },
@@ -277,17 +316,18 @@ fn invalid_points_and_lights_are_refused_by_index() {
         SurfacePoint { f90: 1.5, ..point },
         SurfacePoint { albedo: Vec3::splat(-1.0), ..point },
     ] {
-        let error = shader.shade(&gpu, tables, &[point, bad], &[light]).unwrap_err();
+        let error = shader.shade(&gpu, tables, &[point, bad], std::slice::from_ref(&light)).unwrap_err();
         assert!(matches!(error, GpuError::Input { item: "point", index: 1, .. }), "{error}");
     }
     for bad in [
-        RectLight { corners: [Vec3::NAN; 4], ..light },
-        RectLight { radiance: Vec3::new(-1.0, 0.0, 0.0), ..light },
+        AreaLight { shape: LightShape::Sphere { center: Vec3::NAN, radius: 1.0 }, radiance: light.radiance },
+        AreaLight { shape: LightShape::Sphere { center: Vec3::ONE, radius: -1.0 }, radiance: light.radiance },
+        AreaLight { radiance: Vec3::new(-1.0, 0.0, 0.0), ..light.clone() },
     ] {
-        let error = shader.shade(&gpu, tables, &[point], &[light, light, bad]).unwrap_err();
+        let error = shader.shade(&gpu, tables, &[point], &[light.clone(), light.clone(), bad]).unwrap_err();
         assert!(matches!(error, GpuError::Input { item: "light", index: 2, .. }), "{error}");
     }
     let stretched = SurfacePoint { isotropic: true, alpha_x: 0.1, alpha_y: 0.2, ..point };
-    let error = shader.shade(&gpu, tables, &[stretched], &[light]).unwrap_err();
+    let error = shader.shade(&gpu, tables, &[stretched], std::slice::from_ref(&light)).unwrap_err();
     assert!(matches!(error, GpuError::NotIsotropic { index: 0, .. }), "{error}");
 }

@@ -1,18 +1,5 @@
-// Interpolation by the texture unit: 3 fetches for the isotropic table, 6 for the anisotropic. Hardware rounds the weights
-// to about 8 bits. No bindings: textures are parameters. Needs: table, isotropic, anisotropic.
-
-fn ltc_texel(place: LtcPlace) -> f32 {
-    return f32(place.cell) + place.t + 0.5;
-}
-
-fn ltc_fetch_isotropic(texture: texture_2d_array<f32>, filtering: sampler, place: LtcIsotropicPlace) -> LtcTexels {
-    let at = vec2f(ltc_texel(place.alpha), ltc_texel(place.theta)) / vec2f(textureDimensions(texture));
-    return LtcTexels(
-        textureSampleLevel(texture, filtering, at, 0, 0.0),
-        textureSampleLevel(texture, filtering, at, 1, 0.0),
-        textureSampleLevel(texture, filtering, at, 2, 0.0),
-    );
-}
+// The anisotropic table interpolated by the texture unit, which rounds weights to about 8 bits: 6 fetches. No bindings:
+// the texture is a parameter. Needs: table, anisotropic.
 
 fn ltc_fetch_theta(
     texture: texture_3d<f32>,

@@ -1,0 +1,41 @@
+//! Numbers that tables, hosts and shaders share, written as WGSL from the Rust that defines them.
+
+use ltc_core::ALPHA_MIN;
+use ltc_table::Mapping;
+
+use crate::LightKind;
+use crate::layout::mapping_code;
+
+/// A light that emits to both sides.
+pub(crate) const TWO_SIDED: u32 = 1 << 8;
+/// A cylinder with caps.
+pub(crate) const CAPS: u32 = 1 << 9;
+
+/// The module `constants`.
+pub(crate) fn constants() -> String {
+    let mut text = String::from("// Numbers that tables and shaders share; generated. No bindings.\n\n");
+    let mut line = |name: &str, ty: &str, value: String| {
+        text.push_str(&format!("const {name}: {ty} = {value};\n"));
+    };
+    line("LTC_ALPHA_MIN", "f32", format!("{ALPHA_MIN:?}"));
+    for (name, mapping) in [
+        ("LTC_LINEAR", Mapping::Linear),
+        ("LTC_SQRT", Mapping::Sqrt),
+        ("LTC_SQRT_ONE_MINUS_COS", Mapping::SqrtOneMinusCos),
+        ("LTC_HALF_TANGENT", Mapping::HalfTangent),
+    ] {
+        line(name, "u32", format!("{}u", mapping_code(mapping)));
+    }
+    text
+}
+
+/// The module `light_constants`: how a storage buffer says what a light is.
+pub(crate) fn light_constants() -> String {
+    let mut text = String::from("// How a storage buffer says what a light is; generated. No bindings.\n\n");
+    for kind in LightKind::ALL {
+        let name = kind.name().replace('-', "_").to_uppercase();
+        text.push_str(&format!("const LIGHT_{name}: u32 = {}u;\n", kind as u32));
+    }
+    text.push_str(&format!("const LIGHT_TWO_SIDED: u32 = {TWO_SIDED}u;\nconst LIGHT_CAPS: u32 = {CAPS}u;\n"));
+    text
+}

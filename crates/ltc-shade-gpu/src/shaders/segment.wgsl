@@ -1,0 +1,132 @@
+// A straight segment seen from the shading point, and the integral along it that all thin lights share (Heitz and Hill 2017,
+// eq. 1.20 to 1.26, in a form that cancels nowhere). No bindings. Needs: math, precise, lobe.
+
+struct LtcSegment {
+    // Over a power of two near the farther end's distance.
+    p0: vec3f,
+    p1: vec3f,
+    // A normal of the plane through both ends and the shading point: p0 x p1 = normal * moment.
+    normal: vec3f,
+    // 1, but where the square of p0 x p1 would be very small.
+    moment: f32,
+    // Scaled lengths per length.
+    shrink: f32,
+    // False for a segment that spans no angle: of no length, on a ray from the shading point, or through it.
+    valid: bool,
+}
+
+const LTC_SMALL_SQUARE: f32 = 1e-24;
+
+fn ltc_segment(p0: vec3f, p1: vec3f) -> LtcSegment {
+    let scale = ltc_floor_power_of_two(max(ltc_largest_component(p0), ltc_largest_component(p1)));
+    if !(scale > LTC_TINY) {
+        return LtcSegment(p0, p1, vec3f(0.0), 1.0, 1.0, false);
+    }
+    let shrink = 1.0 / scale;
+    let a = p0 * shrink;
+    let b = p1 * shrink;
+    let product = ltc_cross(a, b);
+    if dot(product, product) >= LTC_SMALL_SQUARE {
+        return LtcSegment(a, b, product, 1.0, shrink, true);
+    }
+    let unit = ltc_unit_or_zero(product);
+    return LtcSegment(a, b, unit, dot(product, unit), shrink, dot(unit, unit) > 0.5);
+}
+
+// Unit vector from the shading point towards the nearest point of the line.
+fn ltc_towards_line(segment: LtcSegment) -> vec3f {
+    return ltc_unit_or_zero(cross(segment.p1 - segment.p0, segment.normal));
+}
+
+struct LtcKept {
+    p0: vec3f,
+    p1: vec3f,
+    // 0 for a segment in the horizon or below it.
+    share: f32,
+}
+
+// Moves the end that lies below z = 0, if any, onto it. The moment p0 x p1 says where: the point is
+// (z x moment) / (z1 - z0), which cancels nowhere.
+fn ltc_clip_above(p0: vec3f, p1: vec3f, moment: vec3f) -> LtcKept {
+    if p0.z <= 0.0 && p1.z <= 0.0 {
+        return LtcKept(p0, p1, 0.0);
+    }
+    if p0.z >= 0.0 && p1.z >= 0.0 {
+        return LtcKept(p0, p1, 1.0);
+    }
+    let inverse_rise = 1.0 / (p1.z - p0.z);
+    let crossing = vec3f(-moment.y * inverse_rise, moment.x * inverse_rise, 0.0);
+    if p0.z < 0.0 {
+        return LtcKept(crossing, p1, p1.z * inverse_rise);
+    }
+    return LtcKept(p0, crossing, -p0.z * inverse_rise);
+}
+
+// A length whose square may underflow.
+fn ltc_length(v: vec3f) -> f32 {
+    let scale = ltc_largest_component(v);
+    return select(0.0, scale * length(v / max(scale, LTC_TINY)), scale > LTC_TINY);
+}
+
+// (c_z / d) (angle - sin angle) + tan(angle / 2) (q0_z / |q0| + q1_z / |q1|) (1 / |q0| + 1 / |q1|), the angle being that
+// between q0 and q1, sine = |q0 x q1|, nearness = c_z / d with d the distance of the line, c towards its nearest point.
+fn ltc_cosine_along(q0: vec3f, q1: vec3f, sine: f32, nearness: f32) -> f32 {
+    let r0 = ltc_length(q0);
+    let r1 = ltc_length(q1);
+    if !(r0 > 0.0 && r1 > 0.0 && sine > 0.0) {
+        return 0.0;
+    }
+    // Products of unit lengths: what a horizon cuts may be as near as the line is.
+    let cosine = dot(q0 / r0, q1 / r1);
+    let unit_sine = sine / r0 / r1;
+    // 1 + cos cancels near pi, 1 - cos near 0.
+    let half_tangent = select((1.0 - cosine) / unit_sine, unit_sine / (1.0 + cosine), cosine >= 0.0);
+    let ends = half_tangent * (q0.z / r0 + q1.z / r1) * (1.0 / r0 + 1.0 / r1);
+    let x = half_tangent * half_tangent;
+    let series = x * (1.3333333 - x * (1.6 - x * (1.7142857 - x * 1.7777778)));
+    let bow = select(ltc_atan2(unit_sine, cosine) - unit_sine, half_tangent * series, x < 0.015625);
+    return nearness * bow + ends;
+}
+
+// The integral of D(w) |w x w_t| / |p|^2 dl along the segment, per scaled length: half of eq. 1.6. Of what is above the
+// horizons.
+fn ltc_segment_integral(segment: LtcSegment, lobe: LtcLobe) -> f32 {
+    if !(segment.valid && lobe.valid) {
+        return 0.0;
+    }
+    var share = 1.0;
+    var p0 = segment.p0;
+    var p1 = segment.p1;
+//#if surface_horizon
+    let above = ltc_clip_above(p0, p1, segment.normal * segment.moment);
+    if above.share <= 0.0 {
+        return 0.0;
+    }
+    share = above.share;
+    p0 = above.p0;
+    p1 = above.p1;
+//#endif
+    // q0 x q1 = stretch * transpose(M) * normal, not the product of rounded ends.
+    let width = ltc_cosine_normal(lobe, segment.normal);
+    let squared_width = dot(width, width);
+    let stretch = segment.moment * lobe.area_scale;
+    if !(squared_width > 0.0 && stretch > 0.0) {
+        return 0.0;
+    }
+    var q0 = ltc_cosine_from_target(lobe, p0);
+    var q1 = ltc_cosine_from_target(lobe, p1);
+//#if cosine_horizon
+    let seen = ltc_clip_above(q0, q1, width * (share * stretch));
+    if seen.share <= 0.0 {
+        return 0.0;
+    }
+    share *= seen.share;
+    q0 = seen.p0;
+    q1 = seen.p1;
+//#endif
+    let along = ltc_cosine_from_target(lobe, segment.p1 - segment.p0);
+    let nearness = (along.x * width.y - along.y * width.x) / squared_width / stretch;
+    let sine = share * stretch * sqrt(squared_width);
+    let stretched = sqrt(dot(segment.normal, segment.normal) / squared_width) * lobe.determinant;
+    return stretched * ltc_cosine_along(q0, q1, sine, nearness) / (2.0 * LTC_PI);
+}
