@@ -18,6 +18,8 @@ class Service:
             "LTC_DATA": os.path.join(self.folder.name, "data"),
             "LTC_LOG": "warn",
             "TOKEN_FILE": token_file,
+            # As the unit in deploy/ has it.
+            "MALLOC_ARENA_MAX": "2",
         }
         environment |= {f"LTC_{name.upper()}": str(value) for name, value in settings.items()}
         self.process = subprocess.Popen([program], env=environment, stdout=subprocess.PIPE, text=True)

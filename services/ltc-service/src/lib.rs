@@ -1,40 +1,30 @@
-//! The HTTP service that hands out versioned LTC tables.
+//! The HTTP service that hands out versioned LTC tables, takes in others, fits new ones, and keeps benchmark history.
 //!
-//! [`app`] is the router over an [`AppState`]; [`serve`] binds an address and runs it until SIGINT or SIGTERM.
+//! [`AppState`] is the service over [`Stores`]; [`app`] is its router, to be asked without a connection; [`serve`] binds an address
+//! and runs it until SIGINT or SIGTERM. [`settings`] says what can be configured, and from where.
 //!
 //! ```no_run
-//! use ltc_service::{ServeConfig, serve};
+//! use std::sync::Arc;
 //!
-//! # async fn run(catalogue: ltc_table::Catalogue) -> Result<(), ltc_service::ServeError> {
-//! serve(ServeConfig::default(), catalogue, |address| println!("http://{address}")).await
+//! use ltc_service::{AppState, Settings, Stores, serve};
+//! use ltc_store::EmbeddedStore;
+//!
+//! # async fn run() -> Result<(), Box<dyn std::error::Error>> {
+//! let store = EmbeddedStore::open("data".as_ref())?;
+//! let state = AppState::new(Stores::of(Arc::new(store)), Settings::default()).await?;
+//! serve(state, |address| println!("http://{address}")).await?;
+//! # Ok(())
 //! # }
 //! ```
 //!
-//! # Routes
-//! | route | gives |
-//! |---|---|
-//! | `GET /` | a page that lists the tables and these routes |
-//! | `GET /healthz` | 200 while the process answers |
-//! | `GET /readyz` | 200 when there is a table to serve, else 503 |
-//! | `GET /v1/tables` | every table with its versions |
-//! | `GET /v1/tables/{name}` | the manifest of the latest version, with `latest` and `versions` |
-//! | `GET /v1/tables/{name}/versions` | number, digest and date of each version |
-//! | `GET /v1/tables/{name}/versions/{version}` | the manifest |
-//! | `GET …/{version}/data?format=&precision=&channels=&alpha=&lambda=&theta=` | the table; see [`Variant`] |
-//! | `GET …/{version}/fresnel?format=&precision=` | the magnitude and Fresnel channels alone |
-//! | `GET …/{version}/lookup?theta=&phi=&alpha_x=&alpha_y=` | what the table says about one query |
-//! | `POST …/{version}/lookup` | the same for a JSON array of queries; an array of the same length and order |
+//! The routes are in `router.rs`, described at `/openapi.json`, and explained in `docs/http.md`. How a request goes:
+//! 1. `gate.rs` names it, finds out who asks, counts it, and answers at once what was answered before (`answers.rs`).
+//! 2. A handler in `routes` reads the index (`index.rs`, all metadata in memory) and tables (from the store, kept in memory), and
+//!    leaves what takes more than a moment to other threads (`compute.rs`, `background.rs`).
+//! 3. `representation.rs` gives bytes their tag, their compressed form, and the parts and conditions that were asked for.
+//! 4. Back in the gate, every error becomes a problem document (`problem.rs`), and the answer is counted and logged.
 //!
-//! `{version}` is a number, a digest (`sha256:<hex>`) or `latest`.
-//!
-//! # Caching
-//! The strong `ETag` of every 200 is `"sha256:<hex>"` of its body; for the default form of `data` that is the
-//! table's digest. Table data and manifests addressed by digest or number are `immutable`; addressed by `latest`, as
-//! lists and lookups, they may be kept for a minute. `x-table-version` and `x-table-digest` say which version
-//! answered.
-//!
-//! # Errors
-//! Every error is `application/problem+json` (RFC 9457); [`ApiError`] lists the types.
+//! Errors are [`ApiError`]; the one place where they become statuses is in `error.rs`.
 
 mod answers;
 mod auth;

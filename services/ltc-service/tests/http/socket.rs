@@ -3,7 +3,9 @@
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
+use ltc_service::settings::Refits;
 use ltc_service::{Limits, ServeError, Settings, Stop, serve_until};
+use ltc_store::{Jobs, NewJob};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::sync::{oneshot, watch};
@@ -208,6 +210,37 @@ async fn stopping_does_not_wait_for_ever() {
     server.stop.send(Stop::Drain).unwrap();
     server.ended().await;
     assert!(rest(&mut busy).await.is_empty(), "dropped");
+}
+
+#[tokio::test]
+async fn stopping_ends_event_streams_in_good_order() {
+    let refits = Refits { workers: 0, ..Refits::default() };
+    let settings =
+        Settings { listen: "127.0.0.1:0".to_owned(), drain_seconds: 600.0, refits, ..Settings::default() };
+    let (state, store) = state_over(&catalogue(), settings).await;
+    let job = NewJob {
+        table: ISO.to_owned(),
+        spec: serde_json::json!({}),
+        spec_digest: "sha256:0".to_owned(),
+        priority: 0,
+        alias: None,
+        idempotency: None,
+    };
+    let (job, _) = store.enqueue(job, 10).await.unwrap();
+    let (stop, stopped) = watch::channel(Stop::No);
+    let (ready, address) = oneshot::channel();
+    let task = tokio::spawn(serve_until(state, move |address| ready.send(address).unwrap(), stopped));
+    let server = Server { address: address.await.unwrap(), stop, task };
+    let mut stream = server.connect().await;
+    stream.write_all(&request("GET", &format!("/v1/refits/{}/events", job.id), "")).await.unwrap();
+    let mut seen = Vec::new();
+    while !seen.windows(6).any(|w| w == b"queued") {
+        assert_ne!(stream.read_buf(&mut seen).await.unwrap(), 0, "{}", String::from_utf8_lossy(&seen));
+    }
+    server.stop.send(Stop::Drain).unwrap();
+    // The last chunk says that the stream is whole.
+    assert!(rest(&mut stream).await.ends_with(b"0\r\n\r\n"));
+    server.ended().await;
 }
 
 #[tokio::test]
