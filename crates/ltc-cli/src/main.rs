@@ -15,6 +15,7 @@ mod interrupt;
 mod json_lines;
 mod picture;
 mod progress;
+mod shaders;
 mod tables;
 
 use std::process::ExitCode;

@@ -12,8 +12,8 @@ use tower_http::catch_panic::CatchPanicLayer;
 use crate::gate::Gate;
 use crate::metrics::RouteLabel;
 use crate::routes::{
-    aliases, benchmarks, data, diff, docs, events, health, index, lookup, metrics, problems, refits, tables,
-    upload,
+    aliases, benchmarks, data, diff, docs, events, health, index, lookup, metrics, problems, refits, shaders,
+    tables, upload,
 };
 use crate::{ApiError, AppState};
 
@@ -44,6 +44,7 @@ fn routes(upload_bytes: usize) -> Vec<(&'static str, MethodRouter<AppState>)> {
         ("/v1/refits", get(refits::list).merge(post(refits::ask))),
         ("/v1/refits/{id}", get(refits::one).delete(refits::cancel)),
         ("/v1/refits/{id}/events", get(events::stream)),
+        ("/v1/shaders/{lang}", get(shaders::source)),
         ("/v1/benchmarks", get(benchmarks::list).merge(post(benchmarks::add))),
     ]
 }

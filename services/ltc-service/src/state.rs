@@ -2,7 +2,7 @@
 
 use std::net::IpAddr;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
@@ -22,7 +22,7 @@ use crate::metrics::Metrics;
 use crate::rates::{Client, Rates};
 use crate::representation::{Tagged, compressed};
 use crate::settings::{Limits, Settings};
-use crate::{ApiError, Stores, Variant};
+use crate::{ApiError, ShaderSource, Stores, Variant};
 
 /// Stores, settings, what is in memory of the stores, and counters. Clones share everything.
 #[derive(Clone, Debug)]
@@ -46,6 +46,7 @@ struct Shared {
     tokens: Tokens,
     rates: Rates,
     metrics: Metrics,
+    shaders: OnceLock<Arc<dyn ShaderSource>>,
     requests: Arc<Semaphore>,
     streams: Arc<Semaphore>,
     stopping: watch::Sender<bool>,
@@ -84,6 +85,7 @@ impl AppState {
             tokens: Tokens::default(),
             rates: Rates::new(limits),
             metrics: Metrics::default(),
+            shaders: OnceLock::new(),
             requests: Arc::new(Semaphore::new(limits.concurrent_requests)),
             streams: Arc::new(Semaphore::new(limits.event_streams)),
             stopping: watch::Sender::new(false),
@@ -96,6 +98,15 @@ impl AppState {
     /// Names of the tables that are served.
     pub fn table_names(&self) -> Vec<String> {
         self.index().names().map(str::to_owned).collect()
+    }
+
+    /// Serves shaders from this source; the first one given stays. Without one there are none.
+    pub fn serve_shaders(&self, source: Arc<dyn ShaderSource>) {
+        let _ = self.0.shaders.set(source);
+    }
+
+    pub(crate) fn shaders(&self) -> Option<Arc<dyn ShaderSource>> {
+        self.0.shaders.get().cloned()
     }
 
     pub(crate) fn settings(&self) -> &Settings {

@@ -13,6 +13,7 @@ use ltc_table::Catalogue;
 use tempfile::TempDir;
 use tracing_subscriber::EnvFilter;
 
+use crate::shaders::Shaders;
 use crate::tables::Tables;
 
 /// Serves the tables over HTTP until Ctrl-C, with refits, uploads and benchmark history.
@@ -136,6 +137,7 @@ async fn serve(
         }
     }
     let state = AppState::new(Stores::of(store), settings).await.context("cannot read the store")?;
+    state.serve_shaders(Arc::new(Shaders));
     let names: Vec<String> = state.table_names();
     ltc_service::serve(state, |address| {
         if temporary {

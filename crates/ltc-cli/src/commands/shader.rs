@@ -30,7 +30,7 @@ pub struct Shader {
         value_name = "FEATURES",
         value_delimiter = ',',
         value_parser = name::<Feature>,
-        default_value = "surface-horizon,cosine-horizon"
+        default_value = crate::shaders::USUAL
     )]
     features: Vec<Option<Feature>>,
     /// File to write, instead of stdout.

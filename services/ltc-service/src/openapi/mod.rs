@@ -354,6 +354,19 @@ fn job_paths() -> Vec<(&'static str, Value)> {
         .body(json!({ "application/json": { "schema": { "$ref": "#/components/schemas/BenchmarkRun" } } }))
         .json(201, "Kept.", "BenchmarkKept")
         .problems(&[408, 409, 413, 415, 422]);
+    let names = |example: &str| json!({ "type": "string", "examples": [example] });
+    let files = ["text/plain", "application/octet-stream"];
+    let shader = read("shader", "shaders", "Shader source with just what is asked for.")
+        .path("lang", "wgsl, glsl, glsl-es, hlsl, msl or spirv.")
+        .query("lights", names("quad,line"), "Which lights, with commas between.")
+        .query(
+            "features",
+            names("isotropic,fresnel,surface-horizon"),
+            "Exactly which features; both horizons unless given.",
+        )
+        .bytes(200, "The source, or SPIR-V.", &files)
+        .ranged(&files)
+        .problems(&[404, 422]);
     let runs = read("benchmarks", "benchmarks", "Benchmark runs, oldest first.")
         .query("name", json!({ "type": "string" }), "Of this series alone.")
         .query(
@@ -382,6 +395,7 @@ fn job_paths() -> Vec<(&'static str, Value)> {
             }),
         ),
         ("/v1/refits/{id}/events", json!({ "get": events.0 })),
+        ("/v1/shaders/{lang}", json!({ "get": shader.0 })),
         ("/v1/benchmarks", json!({ "get": runs.0, "post": add.0 })),
     ]
 }

@@ -12,5 +12,6 @@ pub(crate) mod lookup;
 pub(crate) mod metrics;
 pub(crate) mod problems;
 pub(crate) mod refits;
+pub(crate) mod shaders;
 pub(crate) mod tables;
 pub(crate) mod upload;

@@ -16,6 +16,7 @@ mod openapi;
 mod ranges;
 mod refits;
 mod service;
+mod shaders;
 mod socket;
 mod support;
 mod uploads;

@@ -11,6 +11,7 @@ fn filled(path: &str) -> String {
         .replace("{version}", "1")
         .replace("{other}", "2")
         .replace("{alias}", "stable")
+        .replace("{lang}", "wgsl")
         .replace("{slug}", "malformed")
         .replace("{id}", "00000000000000000000000000000000")
 }
