@@ -95,6 +95,46 @@ fn limit(mapping: Mapping, len: usize) -> (f64, f64, f64) {
     rows.into_iter().fold((0.0, 0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a })
 }
 
+/// Degrees between two views of [`cells_needed`].
+const STEP: f64 = 0.25;
+
+/// How many cells of θ from 0 to 89° it takes at least, wherever the nodes are, for straight lines in `coordinate` of θ to stay
+/// within `error` of magnitude for all α: each cell reaches as far as the best line of each α, whatever its ends, allows.
+fn cells_needed(curves: &[Vec<f64>], coordinate: Mapping, error: f64) -> usize {
+    let views: Vec<f64> = (0..curves[0].len()).map(|i| (STEP * i as f64).to_radians()).collect();
+    let at: Vec<f64> = views.iter().map(|theta| coordinate.coordinate(*theta)).collect();
+    let fits = |from: usize, to: usize| {
+        curves.iter().all(|values| best_line(&at[from..=to], &values[from..=to]) <= error)
+    };
+    let (mut from, mut cells) = (0, 0);
+    while from + 1 < at.len() {
+        let mut to = from + 1;
+        while to + 1 < at.len() && fits(from, to + 1) {
+            to += 1;
+        }
+        (from, cells) = (to, cells + 1);
+    }
+    cells
+}
+
+/// Magnitude over θ from 0 to 89° for isotropic α from 0.01 to 1.
+fn curves() -> Vec<Vec<f64>> {
+    let rule = DiskRule::of_about(8192);
+    let alphas: Vec<f64> = (0..24).map(|i| 0.01 * 100.0_f64.powf(f64::from(i) / 23.0)).collect();
+    let count = (89.0 / STEP) as usize + 1;
+    alphas
+        .par_iter()
+        .map_init(Lobe::default, |lobe, &alpha| {
+            let widths = Alpha::new(alpha, alpha).expect("it is in range");
+            let magnitude = |i: usize, lobe: &mut Lobe| {
+                let theta = (STEP * i as f64).to_radians();
+                GgxFamily.albedo(direction(theta, 0.0), widths, &rule, lobe).0
+            };
+            (0..count).map(|i| magnitude(i, lobe)).collect()
+        })
+        .collect()
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let tables = std::env::args().nth(1).unwrap_or_else(|| "tables".to_owned());
     let catalogue = Catalogue::read_folder(Path::new(&tables))?;
@@ -104,6 +144,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         for len in [8, 12, 16, 24, 32, 64] {
             let (error, alpha, theta) = limit(mapping, len);
             println!("{mapping:?} {len}: at least {error:.4}, at α {alpha:.3} from θ {theta:.1}°");
+        }
+    }
+    let curves = curves();
+    for coordinate in [Mapping::Linear, Mapping::HalfTangent, Mapping::SqrtOneMinusCos] {
+        for error in [0.01, 0.015, 0.02, 0.025] {
+            let cells = cells_needed(&curves, coordinate, error);
+            println!("nodes anywhere, lines in {coordinate:?}: error {error} takes {} nodes", cells + 1);
         }
     }
     Ok(())
