@@ -29,7 +29,7 @@ def main(program, seconds):
             f"/v1/tables/ggx-isotropic/versions/{digest}/data?format=ktx2&precision=f16",
         ]
         report("at rest", measure(service, paths, seconds / 2), 0.0)
-        status, body = service.write("POST", "/v1/refits", {"preset": "ggx-anisotropic", "spec": {"joint": {"seed": 9}}})
+        status, body = service.write("POST", "/v1/refits", {"preset": "ggx-anisotropic", "spec": {"joint": {"seed": 9, "steps": 6000}}})
         assert status == 202, body
         refit = "/v1/refits/" + json.loads(body)["id"]
         while json.loads(service.ask("GET", refit)[1])["state"] == "queued":
