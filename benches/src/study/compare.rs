@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Interval, Record, Run};
+use super::{Interval, Record, Run, YARDSTICK};
 
 /// From which ratio on a change counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +52,8 @@ pub struct Change {
 pub struct Comparison {
     /// Every measure that both have, in the order of the first.
     pub changes: Vec<Change>,
+    /// How much slower the machine as a whole was: divided out of what was timed in turns with the yardstick.
+    pub drift: Option<Interval>,
     /// Measures that the second lacks.
     pub gone: Vec<String>,
     /// Why the two may not be comparable: other machines, a short and a long run.
@@ -68,20 +70,34 @@ impl Comparison {
 /// Compares `after` with `before`.
 pub fn compare(before: &Run, after: &Run, thresholds: Thresholds) -> Comparison {
     let found: BTreeMap<&str, &Record> = after.records.iter().map(|r| (r.id.as_str(), r)).collect();
-    let mut comparison = Comparison { changes: Vec::new(), gone: Vec::new(), doubts: doubts(before, after) };
-    for old in &before.records {
+    let drift = drift(before, after);
+    let mut comparison =
+        Comparison { changes: Vec::new(), drift, gone: Vec::new(), doubts: doubts(before, after) };
+    for old in before.records.iter().filter(|record| record.id != YARDSTICK) {
         let new = found.get(old.id.as_str()).copied();
         for (measure, value) in measures(old) {
             let other = new.and_then(|new| measures(new).into_iter().find(|(m, _)| *m == measure));
             match other {
                 Some((_, other)) => {
-                    comparison.changes.push(change(&old.id, measure, [value, other], thresholds));
+                    let drift = drift.filter(|_| measure == "time" && is_beside_yardstick(&old.id));
+                    comparison.changes.push(change(&old.id, measure, [value, other], drift, thresholds));
                 }
                 None => comparison.gone.push(format!("{} {measure}", old.id)),
             }
         }
     }
     comparison
+}
+
+/// Time of the yardstick in the second run over that in the first.
+fn drift(before: &Run, after: &Run) -> Option<Interval> {
+    let of = |run: &Run| run.records.iter().find(|record| record.id == YARDSTICK)?.time;
+    let (old, new) = (of(before)?, of(after)?);
+    Some(Interval { median: new.median / old.median, low: new.low / old.high, high: new.high / old.low })
+}
+
+fn is_beside_yardstick(id: &str) -> bool {
+    id.starts_with("lookup/") || id.starts_with("integral/")
 }
 
 fn measures(record: &Record) -> Vec<(String, Interval)> {
@@ -92,15 +108,22 @@ fn measures(record: &Record) -> Vec<(String, Interval)> {
     time.into_iter().chain(bytes).chain(errors).collect()
 }
 
-fn change(id: &str, measure: String, [old, new]: [Interval; 2], thresholds: Thresholds) -> Change {
+fn change(
+    id: &str,
+    measure: String,
+    [old, new]: [Interval; 2],
+    drift: Option<Interval>,
+    thresholds: Thresholds,
+) -> Change {
     let is_error = measure != "time" && measure != "bytes";
     // Two errors in the noise of rounding are equal.
     let floor = if is_error { thresholds.error_floor } else { f64::MIN_POSITIVE };
     let raised = |x: f64| x.max(floor);
+    let drift = drift.unwrap_or(Interval { median: 1.0, low: 1.0, high: 1.0 });
     let ratio = Interval {
-        median: raised(new.median) / raised(old.median),
-        low: raised(new.low) / raised(old.high),
-        high: raised(new.high) / raised(old.low),
+        median: raised(new.median) / raised(old.median) / drift.median,
+        low: raised(new.low) / raised(old.high) / drift.high,
+        high: raised(new.high) / raised(old.low) / drift.low,
     };
     let threshold = 1.0 + if measure == "time" { thresholds.time } else { thresholds.error };
     let verdict = if ratio.median > threshold && ratio.low > 1.0 {
@@ -184,6 +207,29 @@ mod tests {
         let mut after = run();
         after.records[0].errors.insert("max".into(), 1.01 * 6e-7);
         assert_eq!(worse(&after), ["integral/quad/exact/f32 max"]);
+    }
+
+    #[test]
+    fn a_slower_machine_is_no_slower_program() {
+        let scaled = |by: f64, clock: f64| {
+            let mut run = run();
+            let record = Record::new(YARDSTICK, "step");
+            run.records.push(record.timed(Interval { median: 2.0, low: 1.99, high: 2.01 }));
+            for record in &mut run.records {
+                let by = if record.id == YARDSTICK { clock } else { by };
+                if let Some(time) = &mut record.time {
+                    *time = Interval { median: by * time.median, low: by * time.low, high: by * time.high };
+                }
+            }
+            run
+        };
+        let before = scaled(1.0, 1.0);
+        let same = compare(&before, &scaled(1.2, 1.2), Thresholds::default());
+        assert!(same.is_good(), "{:?}", same.changes);
+        assert!((same.drift.unwrap().median - 1.2).abs() < 1e-12);
+        assert!((same.changes[0].ratio.median - 1.0).abs() < 1e-12);
+        // On a machine that is faster by a fifth, the same times are a loss.
+        assert!(!compare(&before, &scaled(1.0, 1.0 / 1.2), Thresholds::default()).is_good());
     }
 
     #[test]

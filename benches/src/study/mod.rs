@@ -25,7 +25,7 @@ pub use error::StudyError;
 pub use exports::{action, bencher, csv};
 pub use machine::Machine;
 pub use page::page;
-pub use record::{Interval, Record, Run, SCHEMA};
+pub use record::{Interval, Record, Run, SCHEMA, YARDSTICK};
 use timer::{Rounds, Task};
 
 /// What to measure.
@@ -92,8 +92,8 @@ fn timed(plan: &Plan, catalogue: &Catalogue) -> Result<Vec<Record>, StudyError> 
     let polygons: &[usize] = if plan.quick { &[3, 8, 64] } else { &[3, 4, 8, 16, 32, 64] };
     let lights = integrals::Lights::new(catalogue.find("ggx-anisotropic")?.table(), count)?;
     let mut forms = integrals::forms(&lights, polygons)?;
-    let mut records = Vec::new();
-    let mut tasks = Vec::new();
+    let mut records = vec![Record::new(YARDSTICK, "step")];
+    let mut tasks = vec![timer::yardstick()];
     for name in ["ggx-isotropic", "ggx-isotropic-dropin", "ggx-anisotropic"] {
         let Ok(version) = catalogue.find(name) else { continue };
         for (task, way) in lookups::tasks(version, 1000).into_iter().zip(["interpolated", "inverted"]) {

@@ -9,6 +9,9 @@ use super::Machine;
 /// The layout of [`Run`] that this program writes.
 pub const SCHEMA: u32 = 1;
 
+/// The record of what takes as long as the machine is slow, timed in the same turns as lookups and integrals.
+pub const YARDSTICK: &str = "yardstick/chain";
+
 /// One run of the study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {

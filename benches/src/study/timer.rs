@@ -1,5 +1,6 @@
 //! Times of many things, measured in turns.
 
+use std::hint::black_box;
 use std::time::Instant;
 
 use super::Interval;
@@ -46,6 +47,19 @@ impl<'a> Task<'a> {
     }
 }
 
+/// What takes as long as the machine is slow and nothing else: a chain of products and sums, each waiting for the one before.
+/// Clocks differ from minute to minute by some per cent; what is timed in turns with this can be compared all the same.
+pub fn yardstick() -> Task<'static> {
+    const STEPS: usize = 1000;
+    Task::new(STEPS, || {
+        let mut x = black_box(1.0_f64);
+        for _ in 0..STEPS {
+            x = x * 0.999 + 0.001;
+        }
+        black_box(x);
+    })
+}
+
 /// Nanoseconds of a unit of each task.
 ///
 /// Tasks take turns: every one is measured once before any is measured again, so that what slows the machine down for some
@@ -64,12 +78,17 @@ pub fn nanoseconds(tasks: &mut [Task<'_>], rounds: Rounds) -> Vec<Option<Interva
 
 #[cfg(test)]
 mod tests {
-    use std::hint::black_box;
-
     use super::*;
 
     fn work(steps: u64) -> f64 {
         (0..steps).fold(1.0, |x, i| black_box(x * 0.999 + i as f64))
+    }
+
+    #[test]
+    fn the_yardstick_takes_time_and_no_more_than_a_chain_does() {
+        let time = nanoseconds(&mut [yardstick()], Rounds { count: 5, seconds: 1e-3 })[0].unwrap();
+        // Two operations of three to five cycles each; unoptimised and on a busy machine more.
+        assert!((0.5..200.0).contains(&time.median), "{time:?}");
     }
 
     #[test]

@@ -114,6 +114,12 @@ impl Compare {
         for doubt in &comparison.doubts {
             eprintln!("careful: {doubt}");
         }
+        if let Some(drift) = comparison.drift {
+            eprintln!(
+                "the machine as a whole: × {:.3} ({:.3} to {:.3}), divided out of lookups and integrals",
+                drift.median, drift.low, drift.high
+            );
+        }
         let mut worse = 0;
         for change in &comparison.changes {
             let verdict = match change.verdict {
