@@ -2,6 +2,7 @@
 //! and Criterion benches of single functions in `benches/` (`cargo bench -p ltc-benches`).
 
 mod double_double;
+mod ready;
 pub mod stability;
 pub mod study;
 

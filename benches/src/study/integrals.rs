@@ -9,15 +9,15 @@ use std::rc::Rc;
 use glam::{DMat3, DVec3};
 use ltc_core::points::SplitMix64;
 use ltc_core::{
-    AnyLight, Cubic, Cylinder, Disk, EdgeForm, Ellipse, Exact, Horizon, Light, Line, Ltc, LtcBatch,
-    Matrix as _, Polygon, PublishedRational, Quad, QuadBatch, Rational, Real, Sides, Sphere, Strip,
-    Vector as _,
+    AnyLight, Cubic, EdgeForm, Exact, Horizon, Light, Ltc, LtcBatch, Matrix as _, Polygon, PublishedRational,
+    Quad, QuadBatch, Rational, Real, Sides,
 };
 use ltc_fit::draw;
 use ltc_reference::{LtcLobe, PolygonOptions, Tolerance, integrate_polygon_boundary};
 use ltc_table::Table;
 
 use super::StudyError;
+use crate::ready::{matrix, ready, vector};
 use crate::stability::{Case, oracle};
 
 /// Half-widths of thin lights, and radii of tubes.
@@ -142,8 +142,7 @@ impl Lights {
     }
 
     fn ltcs<R: Real>(&self) -> Result<Rc<[Ltc<R>]>, StudyError> {
-        let narrow = |m: &DMat3| R::Mat3::from_row_array(m.transpose().to_cols_array().map(R::of));
-        let ltcs: Result<Vec<_>, _> = self.lobes.iter().map(|m| Ltc::new(narrow(m))).collect();
+        let ltcs: Result<Vec<_>, _> = self.lobes.iter().map(|m| Ltc::new(matrix::<R>(m))).collect();
         Ok(ltcs?.into())
     }
 
@@ -168,7 +167,7 @@ fn ngon<R: Real>(light: &Placed, n: usize) -> Vec<R::Vec3> {
     let corner = |i: usize| {
         let (sin, cos) = ((i as f64 + 0.5) * std::f64::consts::TAU / n as f64).sin_cos();
         let stretch = if n == 4 { std::f64::consts::SQRT_2 } else { 1.0 };
-        vector::<R>((light.centre + (light.u * cos + light.v * sin) * stretch).to_array())
+        vector::<R>(&(light.centre + (light.u * cos + light.v * sin) * stretch).to_array())
     };
     (0..n).map(corner).collect()
 }
@@ -176,12 +175,6 @@ fn ngon<R: Real>(light: &Placed, n: usize) -> Vec<R::Vec3> {
 fn corners<R: Real>(light: &Placed) -> [R::Vec3; 4] {
     let four = ngon::<R>(light, 4);
     [four[0], four[1], four[2], four[3]]
-}
-
-/// A vector whose numbers `f32` holds.
-fn vector<R: Real>(p: [f64; 3]) -> R::Vec3 {
-    let [x, y, z] = p.map(|x| R::of(f64::from(x as f32)));
-    R::Vec3::new(x, y, z)
 }
 
 fn polygon<R: Real>(vertices: &[R::Vec3], ltc: &Ltc<R>) -> R {
@@ -217,28 +210,6 @@ fn shapes(l: &Placed) -> [AnyLight; 6] {
         AnyLight::Ellipse { center, axis_u, axis_v, sides },
         AnyLight::Sphere { center, radius },
     ]
-}
-
-/// The light ready made in a precision.
-fn ready<R: Real>(light: &AnyLight) -> Result<Box<dyn Light<R>>, StudyError> {
-    let (v, r) = (|p: &[f64; 3]| vector::<R>(*p), |x: &f64| R::of(f64::from(*x as f32)));
-    Ok(match light {
-        AnyLight::Line { p0, p1, radius } => Box::new(Line::new(v(p0), v(p1), r(radius))?),
-        AnyLight::Strip { p0, p1, width, normal, sides } => {
-            Box::new(Strip::new(v(p0), v(p1), r(width), v(normal), *sides)?)
-        }
-        AnyLight::Cylinder { p0, p1, radius, caps } => {
-            Box::new(Cylinder::new(v(p0), v(p1), r(radius), *caps)?)
-        }
-        AnyLight::Disk { center, normal, radius, sides } => {
-            Box::new(Disk::new(v(center), v(normal), r(radius), *sides)?)
-        }
-        AnyLight::Ellipse { center, axis_u, axis_v, sides } => {
-            Box::new(Ellipse::new(v(center), v(axis_u), v(axis_v), *sides)?)
-        }
-        AnyLight::Sphere { center, radius } => Box::new(Sphere::new(v(center), r(radius))?),
-        AnyLight::Polygon { .. } => return Err(StudyError::Oracle("a polygon is a form of its own".into())),
-    })
 }
 
 /// Forms of one set of lights, as they are listed.
@@ -338,8 +309,8 @@ impl List<'_> {
             let name = format!("{}/exact", first[k].name());
             let cases = self.lights.lobes.iter().zip(&lights);
             let truth = cases.map(|(m, l)| oracle(&Case::new(*m, l[k].clone(), false))).collect();
-            let double: Result<Vec<_>, _> = lights.iter().map(|l| ready::<f64>(&l[k])).collect();
-            let single: Result<Vec<_>, _> = lights.iter().map(|l| ready::<f32>(&l[k])).collect();
+            let double: Result<Vec<_>, _> = lights.iter().map(|l| ready::<f64>(&l[k], &[])).collect();
+            let single: Result<Vec<_>, _> = lights.iter().map(|l| ready::<f32>(&l[k], &[])).collect();
             self.double(&name, &truth, double?, |light, ltc| light.integrate(ltc));
             self.single(&name, &truth, 1e-3, single?, |light, ltc| light.integrate(ltc));
         }
