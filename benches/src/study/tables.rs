@@ -17,7 +17,7 @@ const SEED: u64 = 77;
 /// Those of rounding and looking up.
 pub fn shipped(version: &TableVersion, plan: &Plan) -> Result<Vec<Record>, StudyError> {
     let name = &version.manifest().name;
-    let layout = layout_of(name);
+    let layout = FitSpec::of_manifest(version.manifest())?.measure.layout;
     [Precision::F16, Precision::F32]
         .into_iter()
         .map(|precision| {
@@ -63,14 +63,9 @@ pub fn sizes(plan: &Plan, mut step: impl FnMut(&str)) -> Result<Vec<Record>, Stu
     Ok(records)
 }
 
-/// What a user of the table interpolates.
-fn layout_of(name: &str) -> Layout {
-    if name.ends_with("-dropin") { Layout::DropIn } else { Layout::Matrix }
-}
-
 /// Whether its errors are those of GGX.
 pub fn is_ggx(version: &TableVersion) -> bool {
-    version.manifest().name.starts_with("ggx-")
+    version.manifest().brdf.name == "ggx"
 }
 
 fn measured(

@@ -2,7 +2,7 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use ltc_table::{Axis, Floors, Mapping, Quantity, check_name};
+use ltc_table::{Axis, Floors, Manifest, Mapping, Quantity, check_name};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -47,6 +47,15 @@ impl FitSpec {
         "oren-nayar",
         "charlie-sheen",
     ];
+
+    /// How a manifest says that its table was fitted.
+    ///
+    /// # Errors
+    /// [`FitError::Spec`] where it does not say it so that this program understands.
+    pub fn of_manifest(manifest: &Manifest) -> Result<Self, FitError> {
+        serde_json::from_value(manifest.fit.clone())
+            .map_err(|e| FitError::Spec { field: "fit", reason: e.to_string() })
+    }
 
     /// A specification by name.
     ///

@@ -24,7 +24,7 @@ pub struct Verification {
 /// # Errors
 /// [`FitError::Spec`] when the manifest's `fit` is not a specification this program knows.
 pub fn verify(version: &TableVersion) -> Result<Verification, FitError> {
-    verify_with(spec_of(version)?.brdf()?, version)
+    verify_with(FitSpec::of_manifest(version.manifest())?.brdf()?, version)
 }
 
 /// The same for a BRDF that [`FitSpec::brdf`] does not know.
@@ -32,7 +32,7 @@ pub fn verify(version: &TableVersion) -> Result<Verification, FitError> {
 /// # Errors
 /// As [`verify`], and [`FitError::Spec`] when the manifest names another BRDF.
 pub fn verify_with(brdf: &dyn Brdf, version: &TableVersion) -> Result<Verification, FitError> {
-    let spec = spec_of(version)?;
+    let spec = FitSpec::of_manifest(version.manifest())?;
     spec.validate_with(brdf)?;
     let mut faults = Vec::new();
     check_payload(version, &mut faults)?;
@@ -48,7 +48,7 @@ pub fn verify_with(brdf: &dyn Brdf, version: &TableVersion) -> Result<Verificati
 /// # Errors
 /// As [`verify`], and [`FitError::Stopped`] when the observer says so.
 pub fn refit_digest(version: &TableVersion, observer: Observer<'_>) -> Result<String, FitError> {
-    let (table, _) = crate::fit(&spec_of(version)?, observer)?;
+    let (table, _) = crate::fit(&FitSpec::of_manifest(version.manifest())?, observer)?;
     Ok(digest(&TableVersion::payload_of(&table)?))
 }
 
@@ -57,13 +57,7 @@ pub fn refit_digest(version: &TableVersion, observer: Observer<'_>) -> Result<St
 /// # Errors
 /// As [`verify`].
 pub fn refit_plan(version: &TableVersion) -> Result<Plan<'static>, FitError> {
-    Plan::new(spec_of(version)?)
-}
-
-/// How the manifest says that the table was fitted.
-fn spec_of(version: &TableVersion) -> Result<FitSpec, FitError> {
-    serde_json::from_value(version.manifest().fit.clone())
-        .map_err(|e| FitError::Spec { field: "fit", reason: e.to_string() })
+    Plan::new(FitSpec::of_manifest(version.manifest())?)
 }
 
 /// The payload is that of the manifest, and is what this program writes for its table: nothing else is in it.

@@ -43,8 +43,7 @@ pub fn check(json: &Value, limits: &Limits) -> Result<Checked, RefitError> {
 
 /// What names the specification that a version was fitted by; `None` where its manifest has none.
 pub fn spec_digest(manifest: &Manifest) -> Option<String> {
-    let spec: FitSpec = serde_json::from_value(manifest.fit.clone()).ok()?;
-    digest_of(&spec).ok()
+    digest_of(&FitSpec::of_manifest(manifest).ok()?).ok()
 }
 
 /// That of [`ltc_fit::Plan::digest`], without a plan: one of a specification that is too large must not be made.
