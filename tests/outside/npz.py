@@ -30,6 +30,7 @@ MAPPINGS = {
     "sqrt": math.sqrt,
     "sqrt_one_minus_cos": lambda x: math.sqrt(1.0 - math.cos(x)),
     "half_tangent": lambda x: math.tan(0.5 * x),
+    "grazing_half_tangent": lambda x: math.tan(0.5 * x) / (2.0 - math.tan(0.5 * x)),
 }
 
 

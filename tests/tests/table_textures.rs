@@ -7,7 +7,7 @@ use ltc_fit::draw;
 use ltc_shade_gpu::{
     Filtering, Gpu, GpuError, GpuOptions, LightJob, LightKind, Lights, Lookups, TableTextures, Texels,
 };
-use ltc_table::{Axis, Mapping, Query, Table};
+use ltc_table::{Axis, Query, Table};
 use ltc_tests::{LightBackEnd, LightsF64, light_jobs, table};
 
 const COUNT: usize = 20_000;
@@ -48,12 +48,7 @@ fn with_8_bits(axis: &Axis, value: f64) -> f64 {
     let cells = (axis.len - 1) as f64;
     let position = ((axis.mapping.coordinate(value) - low) / (high - low) * cells).clamp(0.0, cells);
     let u = low + (position * 256.0).round() / 256.0 / cells * (high - low);
-    match axis.mapping {
-        Mapping::Linear => u,
-        Mapping::Sqrt => u * u,
-        Mapping::SqrtOneMinusCos => (1.0 - u * u).acos(),
-        Mapping::HalfTangent => 2.0 * u.atan(),
-    }
+    axis.mapping.value(u)
 }
 
 /// The query as texture units with 8-bit weights see it: all axes of the isotropic table; those of the anisotropic but θ, which

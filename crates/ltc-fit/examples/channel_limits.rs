@@ -10,6 +10,9 @@ use ltc_fit::{Brdf, DiskRule, GgxFamily, Lobe, direction, draw};
 use ltc_table::{Catalogue, Mapping};
 use rayon::prelude::*;
 
+const THETA_MAPPINGS: [Mapping; 4] =
+    [Mapping::Linear, Mapping::HalfTangent, Mapping::GrazingHalfTangent, Mapping::SqrtOneMinusCos];
+
 /// Views, roughnesses and errors of 20,000 lookups up to 89° that no fit has seen, worst first.
 fn worst(tables: &Catalogue, name: &str, isotropic: bool) -> Result<(), Box<dyn Error>> {
     let version = tables.find(name)?;
@@ -140,14 +143,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let catalogue = Catalogue::read_folder(Path::new(&tables))?;
     worst(&catalogue, "ggx-isotropic", true)?;
     worst(&catalogue, "ggx-anisotropic", false)?;
-    for mapping in [Mapping::Linear, Mapping::HalfTangent, Mapping::SqrtOneMinusCos] {
+    for mapping in THETA_MAPPINGS {
         for len in [8, 12, 16, 24, 32, 64] {
             let (error, alpha, theta) = limit(mapping, len);
             println!("{mapping:?} {len}: at least {error:.4}, at α {alpha:.3} from θ {theta:.1}°");
         }
     }
     let curves = curves();
-    for coordinate in [Mapping::Linear, Mapping::HalfTangent, Mapping::SqrtOneMinusCos] {
+    for coordinate in THETA_MAPPINGS {
         for error in [0.01, 0.015, 0.02, 0.025] {
             let cells = cells_needed(&curves, coordinate, error);
             println!("nodes anywhere, lines in {coordinate:?}: error {error} takes {} nodes", cells + 1);

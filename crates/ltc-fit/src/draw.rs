@@ -1,6 +1,6 @@
 //! The queries that tables are judged by, and those that they are fitted to.
 
-use core::f64::consts::TAU;
+use core::f64::consts::{FRAC_PI_2, TAU};
 
 use ltc_core::points::SplitMix64;
 use ltc_table::Query;
@@ -44,7 +44,8 @@ pub fn training(rng: &mut SplitMix64, count: usize, isotropic: bool) -> Vec<Quer
 }
 
 /// Queries for magnitude and Fresnel: the standard draw up to 89.5°, every fourth query near grazing and near α = 0, where both
-/// change fastest. There α is even in its logarithm and θ crowds towards 89.5°.
+/// change fastest. There α is even in its logarithm and θ crowds towards 89.5°. Another quarter of the anisotropic queries looks
+/// along the smooth axis of thin lobes: within about λ of φ = 90° the width that the view sees falls from α to αλ.
 pub fn grazing(rng: &mut SplitMix64, count: usize, isotropic: bool) -> Vec<Query> {
     (0..count)
         .map(|i| {
@@ -54,9 +55,20 @@ pub fn grazing(rng: &mut SplitMix64, count: usize, isotropic: bool) -> Vec<Query
                 (query.alpha_x, query.alpha_y) = (alpha, alpha * query.alpha_y / query.alpha_x);
                 query.theta = (89.5 - 35.0 * rng.unit().powi(2)).to_radians();
             }
+            if i % 4 == 1 && !isotropic {
+                query.phi = FRAC_PI_2 * (1.0 - rng.unit().powi(3));
+                query.alpha_y = query.alpha_x * 0.045_f64.powf(rng.unit());
+                query.theta = (89.2 - 25.0 * rng.unit().powf(1.5)).to_radians();
+            }
             query
         })
         .collect()
+}
+
+/// Whether a query belongs to the draw that magnitude and Fresnel are judged by, or is just beyond its ends.
+pub(crate) fn is_judged(query: &Query) -> bool {
+    let (alpha, lambda) = (query.alpha_x, query.alpha_y / query.alpha_x);
+    alpha >= 0.0095 && lambda >= 0.048 && query.theta <= (ALBEDO_THETA_MAX_DEGREES + 0.1).to_radians()
 }
 
 fn one(

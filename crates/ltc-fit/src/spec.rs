@@ -66,11 +66,11 @@ impl FitSpec {
             return Ok(spec);
         }
         let layout = if name == "ggx-isotropic-dropin" { Layout::DropIn } else { Layout::Matrix };
-        let (axes, steps, learning_rate, channel_queries) = match name {
+        let (axes, steps, learning_rate, channel_queries, power) = match name {
             "ggx-isotropic" | "ggx-isotropic-dropin" => {
-                (ltc_table::drop_in::axes(64).to_vec(), 200, 3e-3, 20_000)
+                (ltc_table::drop_in::axes(64).to_vec(), 200, 3e-3, 20_000, 2)
             }
-            "ggx-anisotropic" => (anisotropic_axes(), 1500, 6e-3, 60_000),
+            "ggx-anisotropic" => (anisotropic_axes(), 1500, 6e-3, 60_000, 4),
             _ => {
                 let known = Self::PRESETS.join(", ");
                 return Err(FitError::NoSuchPreset { name: name.to_owned(), known });
@@ -84,7 +84,7 @@ impl FitSpec {
             objective: "total_variation".to_owned(),
             entries: EntrySettings::new(512, 100),
             joint: JointSettings { steps, queries: 2048, samples: 256, learning_rate, seed: 3, layout },
-            channels: ChannelSettings { samples: 2048, queries: channel_queries, seed: 5 },
+            channels: ChannelSettings { samples: 2048, queries: channel_queries, seed: 5, power },
             measure: MeasureSettings { queries: 3000, samples: 4096, seed: 77, layout },
         })
     }
@@ -224,6 +224,7 @@ impl FitSpec {
             ("joint.samples", self.joint.samples, 32, 1 << 20),
             ("channels.samples", self.channels.samples, 256, 1 << 20),
             ("channels.queries", self.channels.queries, 0, 1 << 22),
+            ("channels.power", self.channels.power as usize, 2, 8),
             ("measure.queries", self.measure.queries, 100, 1 << 20),
             ("measure.samples", self.measure.samples, 256, 1 << 20),
         ] {
@@ -250,7 +251,12 @@ fn anisotropic_axes() -> Vec<Axis> {
     alpha.domain[0] = 0.005;
     let mut lambda = Axis::full(Lambda, Mapping::Sqrt, 8);
     lambda.domain[0] = 0.03;
-    vec![Axis::full(Theta, Mapping::HalfTangent, 8), Axis::full(Phi, Mapping::Linear, 8), alpha, lambda]
+    vec![
+        Axis::full(Theta, Mapping::GrazingHalfTangent, 8),
+        Axis::full(Phi, Mapping::Linear, 8),
+        alpha,
+        lambda,
+    ]
 }
 
 #[cfg(test)]

@@ -115,7 +115,7 @@ const COMMENTS: &[(&str, &str)] = &[
         "axes",
         "The axes, slowest first: theta, alpha (isotropic) or theta, phi, alpha, lambda.\n\
          mapping: nodes are even in x (linear), in the root of x (sqrt), in the root of 1 - cos x (sqrt_one_minus_cos)\n\
-         or in tan(x/2) (half_tangent).\n\
+         in t = tan(x/2) (half_tangent) or in t/(2 - t) (grazing_half_tangent).\n\
          domain: first and last node, angles in radians; left out, it is the whole range. len: number of nodes.",
     ),
     ("floors", "Smallest values that the BRDF is evaluated at."),
@@ -145,6 +145,10 @@ const COMMENTS: &[(&str, &str)] = &[
     ("channels.samples", "Nodes of each integral's quadrature."),
     ("channels.queries", "Random queries between the entries; 0 keeps the entries' own values."),
     ("channels.seed", "Seed of the queries."),
+    (
+        "channels.power",
+        "Power of the error that is minimised: 2 (left out, it is this) for the least mean, up to 8 for a smaller largest.",
+    ),
     ("measure", "Last, how good the table is."),
     ("measure.queries", "Random queries of the standard draw."),
     ("measure.samples", "Samples of the lobe at each query and at each entry."),

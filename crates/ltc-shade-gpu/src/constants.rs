@@ -17,6 +17,7 @@ pub(crate) fn mapping_code(mapping: Mapping) -> u32 {
         Mapping::Sqrt => 1,
         Mapping::SqrtOneMinusCos => 2,
         Mapping::HalfTangent => 3,
+        Mapping::GrazingHalfTangent => 4,
     }
 }
 
@@ -32,6 +33,7 @@ pub(crate) fn constants() -> String {
         ("LTC_SQRT", Mapping::Sqrt),
         ("LTC_SQRT_ONE_MINUS_COS", Mapping::SqrtOneMinusCos),
         ("LTC_HALF_TANGENT", Mapping::HalfTangent),
+        ("LTC_GRAZING_HALF_TANGENT", Mapping::GrazingHalfTangent),
     ] {
         line(name, "u32", format!("{}u", mapping_code(mapping)));
     }

@@ -136,7 +136,7 @@ impl AxesUniform {
             return Ok(Self::zeroed());
         };
         for axis in rest {
-            if matches!(axis.mapping, Mapping::SqrtOneMinusCos | Mapping::HalfTangent) {
+            if !matches!(axis.mapping, Mapping::Linear | Mapping::Sqrt) {
                 let (mapping, quantity) = (axis.mapping.name(), axis.quantity.name());
                 return Err(GpuError::UnsupportedAxis { mapping, quantity });
             }

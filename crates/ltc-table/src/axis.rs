@@ -45,9 +45,17 @@ pub enum Mapping {
     /// `u = tan(x/2)`, for θ: the radius of the stereographic projection. Nodes lie twice as dense at π/2 as at 0, and
     /// `sin x / (1 + cos x)` needs no inverse function.
     HalfTangent,
+    /// `u = t/(2 − t)`, `t = tan(x/2)`, for θ: nodes lie eight times as dense at π/2 as at 0, because magnitude and Fresnel
+    /// term of narrow lobes fall within a few degrees of grazing. As `sin x / (2 + 2 cos x − sin x)` it needs no inverse
+    /// function either.
+    GrazingHalfTangent,
 }
 
 impl Mapping {
+    /// All of them.
+    pub const ALL: [Self; 5] =
+        [Self::Linear, Self::Sqrt, Self::SqrtOneMinusCos, Self::HalfTangent, Self::GrazingHalfTangent];
+
     /// The name in manifests.
     pub fn name(self) -> &'static str {
         match self {
@@ -55,6 +63,7 @@ impl Mapping {
             Self::Sqrt => "sqrt",
             Self::SqrtOneMinusCos => "sqrt_one_minus_cos",
             Self::HalfTangent => "half_tangent",
+            Self::GrazingHalfTangent => "grazing_half_tangent",
         }
     }
 
@@ -66,6 +75,10 @@ impl Mapping {
             // 1 − cos x = 2 sin²(x/2), without the cancellation near 0.
             Self::SqrtOneMinusCos => core::f64::consts::SQRT_2 * (0.5 * value).sin().abs(),
             Self::HalfTangent => (0.5 * value).tan(),
+            Self::GrazingHalfTangent => {
+                let (sin, cos) = (0.5 * value).sin_cos();
+                sin / (2.0 * cos - sin)
+            }
         }
     }
 
@@ -76,6 +89,7 @@ impl Mapping {
             Self::Sqrt => coordinate * coordinate,
             Self::SqrtOneMinusCos => 2.0 * (coordinate / core::f64::consts::SQRT_2).clamp(0.0, 1.0).asin(),
             Self::HalfTangent => 2.0 * coordinate.atan(),
+            Self::GrazingHalfTangent => 2.0 * (2.0 * coordinate).atan2(1.0 + coordinate),
         }
     }
 
@@ -86,6 +100,10 @@ impl Mapping {
             Self::Sqrt => 2.0 * value.max(0.0).sqrt(),
             Self::SqrtOneMinusCos => core::f64::consts::SQRT_2 / (0.5 * value).cos(),
             Self::HalfTangent => 2.0 * (0.5 * value).cos().powi(2),
+            Self::GrazingHalfTangent => {
+                let (sin, cos) = (0.5 * value).sin_cos();
+                (2.0 * cos - sin).powi(2)
+            }
         }
     }
 }
@@ -166,19 +184,16 @@ impl Axis {
 mod tests {
     use super::*;
 
-    const MAPPINGS: [Mapping; 4] =
-        [Mapping::Linear, Mapping::Sqrt, Mapping::SqrtOneMinusCos, Mapping::HalfTangent];
-
     #[test]
     fn the_name_is_the_manifests() {
-        for mapping in MAPPINGS {
+        for mapping in Mapping::ALL {
             assert_eq!(serde_json::to_value(mapping).unwrap(), mapping.name());
         }
     }
 
     #[test]
     fn the_slope_is_the_difference_quotient() {
-        for mapping in MAPPINGS {
+        for mapping in Mapping::ALL {
             for value in [0.1, 0.7, 1.0] {
                 let u = mapping.coordinate(value);
                 let quotient = (mapping.value(u + 1e-5) - mapping.value(u - 1e-5)) / 2e-5;
@@ -189,7 +204,7 @@ mod tests {
 
     #[test]
     fn nodes_and_locate_are_each_others_inverse() {
-        for mapping in MAPPINGS {
+        for mapping in Mapping::ALL {
             for quantity in [Quantity::Theta, Quantity::Alpha] {
                 let axis = Axis::full(quantity, mapping, 9);
                 for i in 0..9 {

@@ -91,6 +91,7 @@ fn tables(request: &ShaderRequest) -> Vec<String> {
         (Mapping::Sqrt, "u(x) = sqrt(x)"),
         (Mapping::SqrtOneMinusCos, "u(x) = sqrt(1 - cos x)"),
         (Mapping::HalfTangent, "u(x) = tan(x / 2)"),
+        (Mapping::GrazingHalfTangent, "u(x) = t / (2 - t), t = tan(x / 2)"),
     ] {
         lines.push(format!("  {} for {}: {formula}", mapping_code(mapping), mapping.name()));
     }

@@ -8,7 +8,7 @@ struct LtcAxis {
     scale: f32,
     // Number of cells: the last node.
     last: f32,
-    // LTC_LINEAR, LTC_SQRT, LTC_SQRT_ONE_MINUS_COS or LTC_HALF_TANGENT.
+    // LTC_LINEAR, LTC_SQRT, LTC_SQRT_ONE_MINUS_COS, LTC_HALF_TANGENT or LTC_GRAZING_HALF_TANGENT.
     mapping: u32,
 }
 
@@ -46,7 +46,7 @@ fn ltc_place(axis: LtcAxis, coordinate: f32) -> LtcPlace {
     return LtcPlace(u32(cell), position - cell);
 }
 
-// For every quantity but theta; LTC_SQRT_ONE_MINUS_COS and LTC_HALF_TANGENT are for theta alone.
+// For every quantity but theta; the mappings by sine and cosine are for theta alone.
 fn ltc_place_of_value(axis: LtcAxis, value: f32) -> LtcPlace {
     return ltc_place(axis, select(value, sqrt(max(value, 0.0)), axis.mapping == LTC_SQRT));
 }
@@ -60,6 +60,10 @@ fn ltc_place_of_theta(axis: LtcAxis, wo: vec3f) -> LtcPlace {
     }
     if axis.mapping == LTC_HALF_TANGENT {
         return ltc_place(axis, sqrt(squared_sine) / (1.0 + cosine));
+    }
+    if axis.mapping == LTC_GRAZING_HALF_TANGENT {
+        let sine = sqrt(squared_sine);
+        return ltc_place(axis, sine / (2.0 + 2.0 * cosine - sine));
     }
     return ltc_place_of_value(axis, ltc_atan2(sqrt(squared_sine), cosine));
 }

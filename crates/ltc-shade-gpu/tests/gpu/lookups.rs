@@ -76,6 +76,7 @@ fn all_tables() -> Vec<(&'static str, Table)> {
         ("linear", tables::anisotropic(Mapping::Linear, Mapping::Linear)),
         ("sqrt", tables::anisotropic(Mapping::SqrtOneMinusCos, Mapping::Sqrt)),
         ("half tangent", tables::anisotropic(Mapping::HalfTangent, Mapping::Sqrt)),
+        ("grazing half tangent", tables::anisotropic(Mapping::GrazingHalfTangent, Mapping::Sqrt)),
         ("cropped", cropped()),
     ]
 }
