@@ -1,5 +1,8 @@
 //! Polygons whose colour varies: a prefiltered texture fetched once.
 
+use glam::DVec3;
+
+use super::wide::{shrink, widened};
 use super::{Horizon, Light, Polygon, Sides};
 use crate::texture::PrefilteredTexture;
 use crate::{InputError, Ltc, Matrix, Real, Vector};
@@ -14,6 +17,27 @@ pub struct TextureFrame<R: Real> {
     pub axis_u: R::Vec3,
     /// From (0, 0) to (0, 1).
     pub axis_v: R::Vec3,
+}
+
+impl<R: Real> TextureFrame<R> {
+    /// A parallelogram's own: (0, 0) at the first corner, (1, 0) at the second, (0, 1) at the last.
+    pub fn filling(corners: &[R::Vec3; 4]) -> Self {
+        let [origin, second, _, last] = *corners;
+        Self { origin, axis_u: second - origin, axis_v: last - origin }
+    }
+
+    /// Whether it spans a plane.
+    ///
+    /// # Errors
+    /// [`InputError::NotFinite`]; [`InputError::Degenerate`] for axes that are zero or parallel.
+    pub fn check(&self) -> Result<(), InputError> {
+        if !(self.origin.is_finite() && self.axis_u.is_finite() && self.axis_v.is_finite()) {
+            return Err(InputError::NotFinite { name: "texture frame" });
+        }
+        let spans = self.axis_u.try_unit().zip(self.axis_v.try_unit());
+        let normal = spans.and_then(|(u, v)| u.cross(v).try_unit());
+        normal.map(drop).ok_or(InputError::Degenerate { name: "texture frame" })
+    }
 }
 
 /// A place and width to fetch a texture at.
@@ -54,13 +78,7 @@ impl<'a, R: Real> TexturedPolygon<'a, R> {
         texture: &'a PrefilteredTexture,
     ) -> Result<Self, InputError> {
         let polygon = Polygon::new(vertices, sides)?;
-        if !(frame.origin.is_finite() && frame.axis_u.is_finite() && frame.axis_v.is_finite()) {
-            return Err(InputError::NotFinite { name: "texture frame" });
-        }
-        let spans = frame.axis_u.try_unit().zip(frame.axis_v.try_unit());
-        if spans.and_then(|(u, v)| u.cross(v).try_unit()).is_none() {
-            return Err(InputError::Degenerate { name: "texture frame" });
-        }
+        frame.check()?;
         Ok(Self { polygon, frame, texture })
     }
 
@@ -73,9 +91,7 @@ impl<'a, R: Real> TexturedPolygon<'a, R> {
         sides: Sides,
         texture: &'a PrefilteredTexture,
     ) -> Result<Self, InputError> {
-        let [origin, second, _, last] = *vertices;
-        let frame = TextureFrame { origin, axis_u: second - origin, axis_v: last - origin };
-        Self::new(vertices, sides, frame, texture)
+        Self::new(vertices, sides, TextureFrame::filling(vertices), texture)
     }
 
     /// What `ltc` sees of the light, per channel: the share of the lobe times the filtered colour, in the texture's units.
@@ -91,28 +107,29 @@ impl<'a, R: Real> TexturedPolygon<'a, R> {
 
     /// Where the texture is fetched: the projection of the shading point onto the light's plane in cosine space, with
     /// `σ = √(r²/2A)`, r its distance from the plane and A the texture's area there (§5.4).
+    ///
+    /// Nothing is taken to cosine space for it: with o, u, v the frame, `w = u × v` and `b = Mᵀ w`, the normal there up to its
+    /// length, the place is `(Mᵀ(v × o)·b, Mᵀ(o × u)·b) / b²`, and `σ² = det M (w·o)² / (2 |b|³)`. In f64 for either precision.
     pub fn texture_fetch(&self, ltc: &Ltc<R>) -> TextureFetch<R> {
-        let m = ltc.cosine_from_target();
-        let [o, u, v] = [self.frame.origin, self.frame.axis_u, self.frame.axis_v].map(|x| m.apply(x));
         let middle = TextureFetch { uv: [R::of(0.5); 2], sigma: R::ONE / R::TINY };
-        // Common scale out: the fetch does not depend on it, and its fourth power must neither over- nor underflow.
-        let scale = o.max_abs().max(u.max_abs()).max(v.max_abs());
-        let shrink = R::ONE / scale;
-        if !(scale > R::ZERO && shrink.is_finite()) {
+        let m = ltc.target_from_cosine().columns().map(widened::<R>);
+        let transposed = |v: DVec3| DVec3::from_array(m.map(|column| column.dot(v)));
+        let [o, u, v] = [self.frame.origin, self.frame.axis_u, self.frame.axis_v].map(widened::<R>);
+        // Common scale out: the fetch does not depend on it, and its sixth power must neither over- nor underflow.
+        let scale = [o, u, v].map(|x| x.abs().max_element()).into_iter().fold(0.0, f64::max);
+        let Some(factor) = shrink(scale) else { return middle };
+        let [o, u, v] = [o * factor, u * factor, v * factor];
+        let w = u.cross(v);
+        let b = transposed(w);
+        let square = b.length_squared();
+        if square <= f64::MIN_POSITIVE {
             return middle;
         }
-        let [o, u, v] = [o * shrink, u * shrink, v * shrink];
-        let normal = u.cross(v);
-        let square = normal.dot(normal);
-        if square <= R::TINY {
-            return middle;
-        }
-        let height = normal.dot(o);
-        // −o = u·x + v·y + normal·z
-        let x = v.cross(o).dot(normal) / square;
-        let y = o.cross(u).dot(normal) / square;
-        let variance = height * height / (R::of(2.0) * square * square.sqrt());
-        let fetch = TextureFetch { uv: [x, y], sigma: variance.sqrt() };
+        let place = [v.cross(o), o.cross(u)].map(|along| transposed(along).dot(b) / square);
+        let height = w.dot(o) / b.length();
+        let determinant = m[0].dot(m[1].cross(m[2])).max(0.0);
+        let sigma = height.abs() * (0.5 * determinant / b.length()).sqrt();
+        let fetch = TextureFetch { uv: place.map(R::of), sigma: R::of(sigma) };
         let sound = fetch.uv.iter().all(|c| c.is_finite()) && fetch.sigma.is_finite();
         if sound { fetch } else { middle }
     }

@@ -4,4 +4,5 @@ mod filter;
 mod level;
 mod prefiltered;
 
+pub use level::TextureLevel;
 pub use prefiltered::{PrefilteredTexture, TexelGrid};

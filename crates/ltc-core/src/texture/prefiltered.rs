@@ -1,7 +1,7 @@
 //! A texture and its Gaussian levels.
 
 use super::filter::{Source, fill};
-use super::level::{Level, mix};
+use super::level::{Level, TextureLevel, mix};
 use crate::{InputError, check_range};
 
 /// Texels of an image: row by row, the first row at v = 0; linear colours, ≥ 0.
@@ -91,6 +91,20 @@ impl PrefilteredTexture {
         // Towards the texture itself, whose σ is 0, linear in σ.
         let t = if finer.sigma > 0.0 { (sigma / finer.sigma).log2() } else { sigma / level.sigma };
         mix(finer.fetch(uv), level.fetch(uv), t as f32)
+    }
+
+    /// The levels by growing σ, for whoever fetches elsewhere what [`PrefilteredTexture::fetch`] does here. There are at least
+    /// two, and but for the first each σ is twice that before it.
+    pub fn levels(&self) -> impl ExactSizeIterator<Item = TextureLevel<'_>> {
+        self.levels.iter().map(Level::view)
+    }
+
+    /// The largest value of each channel; no fetch is above it.
+    pub fn brightest(&self) -> [f32; 3] {
+        // Every level is made of means of the first, or of a wider level's.
+        self.levels.iter().flat_map(|level| &level.texels).fold([0.0_f32; 3], |most, texel| {
+            core::array::from_fn(|channel| most[channel].max(texel[channel]))
+        })
     }
 
     /// Number of levels, the texture itself included.
