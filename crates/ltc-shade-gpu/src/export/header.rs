@@ -126,7 +126,7 @@ fn functions(request: &ShaderRequest) -> Vec<&'static str> {
         (Feature::Isotropic, &["ltc_lookup_isotropic"]),
         (Feature::Anisotropic, &["ltc_lookup_anisotropic"]),
         (Feature::Fresnel, &["ltc_reflectance"]),
-        (Feature::Textured, &["ltc_texture_fetch", "ltc_texture_colour"]),
+        (Feature::Textured, &["ltc_texture_fetch", "ltc_texture_colour", "ltc_texture_gaussian"]),
     ] {
         if request.has(feature) {
             names.extend(functions);
@@ -188,6 +188,7 @@ fn usage(request: &ShaderRequest, language: Language) -> Vec<String> {
             [
                 "The fraction of a textured quad or polygon is multiplied with its colour, for each lobe:",
                 "  ltc_texture_colour(textures, number, ltc_texture_fetch(lobe, origin, axis_u, axis_v))",
+                "ltc_texture_gaussian, with the same parameters, takes half the fetches and is farther off.",
             ]
             .map(str::to_owned),
         );

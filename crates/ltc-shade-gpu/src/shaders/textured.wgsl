@@ -9,12 +9,15 @@
 struct LtcTextureFetch {
     // Coordinates, anywhere: the filtered texture is defined beyond its square.
     uv: vec2f,
-    // Standard deviation of the filter in units of the texture's sides.
+    // Standard deviation of the paper's one Gaussian in units of the texture's sides.
     sigma: f32,
 }
 
 // Farther and wider than this is all the same.
 const LTC_FARTHEST_UV: f32 = 1e6;
+// Standard deviations of the two Gaussians over that of the paper's one: sqrt(1/2) and sqrt(5).
+const LTC_NARROW_SIGMA: f32 = 0.70710678;
+const LTC_WIDE_SIGMA: f32 = 2.2360680;
 
 // (u, v) is at origin + u axis_u + v axis_v, relative to the shading point in the shading frame. The place is the shading point's
 // orthogonal projection onto the light's plane in cosine space, sigma = sqrt(r^2 / 2A) with r its distance and A the
@@ -83,17 +86,24 @@ fn ltc_texture_level(textures: texture_2d<f32>, number: u32, level: u32, uv: vec
     return mix(below, above, t.y);
 }
 
-// The colour of texture `number` there: linear between levels in log sigma, and towards the picture itself, whose sigma
-// is 0, in sigma. Far outside the square a wider filter is taken, so that it meets the texture.
-fn ltc_texture_colour(textures: texture_2d<f32>, number: u32, fetch: LtcTextureFetch) -> vec3f {
+// Texture `number` through one Gaussian: linear between levels in log sigma, and towards the picture itself, whose sigma is 0, in
+// sigma. Far outside the square a wider one is taken, so that it meets the texture.
+fn ltc_texture_gaussian(textures: texture_2d<f32>, number: u32, fetch: LtcTextureFetch) -> vec3f {
     let head = textureLoad(textures, vec2u(0u, number), 0);
     let outside = max(max(-fetch.uv, fetch.uv - vec2f(1.0)), vec2f(0.0));
-    let sigma = max(fetch.sigma, 0.5 * max(outside.x, outside.y));
-    let ratio = sigma / head.y;
+    let ratio = max(fetch.sigma, 0.5 * max(outside.x, outside.y)) / head.y;
     let position = min(select(1.0 + log2(max(ratio, 1.0)), ratio, ratio < 1.0), head.x - 1.0);
     let finer = floor(position);
     let coarser = min(finer + 1.0, head.x - 1.0);
     let fine = ltc_texture_level(textures, number, u32(finer), fetch.uv);
     let coarse = ltc_texture_level(textures, number, u32(coarser), fetch.uv);
     return mix(fine, coarse, position - finer);
+}
+
+// The colour of texture `number`. A cosine falls on a plane as (1 + d^2 / r^2)^-2 with the distance d there, to which a narrow and
+// a wide Gaussian are nearer than the paper's one, ltc_texture_gaussian(textures, number, fetch), which takes half the fetches.
+fn ltc_texture_colour(textures: texture_2d<f32>, number: u32, fetch: LtcTextureFetch) -> vec3f {
+    let narrow = LtcTextureFetch(fetch.uv, LTC_NARROW_SIGMA * fetch.sigma);
+    let wide = LtcTextureFetch(fetch.uv, LTC_WIDE_SIGMA * fetch.sigma);
+    return 0.5 * (ltc_texture_gaussian(textures, number, narrow) + ltc_texture_gaussian(textures, number, wide));
 }
