@@ -57,4 +57,4 @@ pub use light::{
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};
 pub use roughness::{ALPHA_MIN, Alpha, PerceptualRoughness};
-pub use texture::{PrefilteredTexture, TexelGrid, TextureLevel};
+pub use texture::{PrefilteredTexture, TexelGrid, TextureLevel, TextureRow, TextureRows};

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use ltc_core::{PrefilteredTexture, TexelGrid, TextureFrame};
 use ltc_reference::Picture;
+use rayon::prelude::*;
 
 /// Points of a texel's side at which it is asked whether it belongs to the light.
 const COVERAGE_SIDE: usize = 4;
@@ -56,12 +57,13 @@ impl TextureMap {
 
     /// Filtered for LTCs; says what is wrong with a light that covers none of it.
     pub fn prefiltered(&self) -> Result<PrefilteredTexture, ltc_core::InputError> {
-        PrefilteredTexture::new(TexelGrid {
+        let grid = TexelGrid {
             width: self.picture.width(),
             height: self.picture.height(),
             colours: self.picture.texels(),
             coverage: self.coverage.as_deref(),
-        })
+        };
+        PrefilteredTexture::by_rows(grid, &|count, row| (0..count).into_par_iter().map(row).collect())
     }
 
     /// The frame with its points and directions moved.
@@ -135,6 +137,15 @@ mod tests {
         // Half the square: the upper right texel is no light, but for what the sampling grid has on the diagonal.
         let coverage = map.coverage.unwrap();
         assert!(coverage[0] == 1.0 && coverage[3] < 0.1 && (coverage[1] - 0.5).abs() < 0.2, "{coverage:?}");
+    }
+
+    #[test]
+    fn threads_filter_to_the_same_bits() {
+        let texels = (0..48 * 20).map(|k| [(k % 7) as f32, (k % 48) as f32, 1.0]).collect();
+        let picture = Picture::new(48, 20, texels).unwrap();
+        let map = TextureMap { picture, frame: [DVec3::ZERO, DVec3::X, DVec3::Y], coverage: None };
+        let grid = TexelGrid { width: 48, height: 20, colours: map.picture.texels(), coverage: None };
+        assert_eq!(map.prefiltered().unwrap(), PrefilteredTexture::new(grid).unwrap());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! A texture and its Gaussian levels.
 
-use super::filter::{Source, fill};
+use super::filter::{Source, TextureRows, fill};
 use super::level::{Level, TextureLevel, mix};
 use crate::{InputError, check_range};
 
@@ -60,6 +60,15 @@ impl PrefilteredTexture {
     /// from `width · height`, a colour below 0, a coverage outside [0, 1]; [`InputError::NotFinite`] for a NaN or infinite
     /// one; [`InputError::Degenerate`] when nothing is covered.
     pub fn new(image: TexelGrid<'_>) -> Result<Self, InputError> {
+        Self::by_rows(image, &|count, row| (0..count).map(row).collect())
+    }
+
+    /// As [`PrefilteredTexture::new`], by a host that has threads: `rows(n, row)` gives `row(0)` to `row(n − 1)`, with rayon for
+    /// example `&|n, row| (0..n).into_par_iter().map(row).collect()`. The result is the same to the last bit.
+    ///
+    /// # Errors
+    /// As [`PrefilteredTexture::new`].
+    pub fn by_rows(image: TexelGrid<'_>, rows: TextureRows<'_>) -> Result<Self, InputError> {
         let source = checked(image)?;
         let mean = source.mean();
         let finest = 0.5 / image.width.max(image.height) as f64;
@@ -68,7 +77,7 @@ impl PrefilteredTexture {
         while sigma > finest {
             let mut level = empty_level(sigma, image);
             let coarser = levels.last();
-            fill(&mut level, &source.reduced(sigma), |uv| coarser.map_or(mean, |l| l.fetch(uv)));
+            fill(&mut level, &source.reduced(sigma), |uv| coarser.map_or(mean, |l| l.fetch(uv)), rows);
             levels.push(level);
             sigma *= 0.5;
         }
