@@ -37,9 +37,16 @@ impl TexturedLights {
     /// # Errors
     /// [`GpuError::Device`].
     pub fn new(gpu: &Gpu, textures: LightTextures) -> Result<Self, GpuError> {
-        let module = compile(gpu, Program::IntegrateTextured)?;
+        Self::of_module(gpu, &compile(gpu, Program::IntegrateTextured)?, textures)
+    }
+
+    pub(crate) fn of_module(
+        gpu: &Gpu,
+        module: &wgpu::ShaderModule,
+        textures: LightTextures,
+    ) -> Result<Self, GpuError> {
         let (layout, bound) = gpu.checked(|| Ok(bind(gpu, &textures)))?;
-        Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(&layout), 2)?, bound, textures })
+        Ok(Self { kernel: Kernel::new(gpu, module, "main", Some(&layout), 2)?, bound, textures })
     }
 
     /// What each lobe sees of its light, per channel: the fraction of the lobe times the filtered colour. A degenerate light
