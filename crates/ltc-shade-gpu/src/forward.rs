@@ -9,7 +9,7 @@ use crate::compute::{compile, read_back};
 use crate::layout::ForwardLayout;
 use crate::light::EncodedLights;
 use crate::modules::Program;
-use crate::table_textures::{bind_group, bind_group_layout};
+use crate::table_textures::{textured_group, textured_layout};
 use crate::{AreaLight, Gpu, GpuError, LightTextures, SurfacePoint, Tables};
 
 /// What is drawn into: four floats a pixel.
@@ -83,7 +83,7 @@ impl Forward {
 
     fn compiled(gpu: &Gpu, program: Program, textures: Option<LightTextures>) -> Result<Self, GpuError> {
         let module = compile(gpu, program)?;
-        let tables = bind_group_layout(gpu, textures.is_some())?;
+        let tables = textured_layout(gpu, textures.is_some())?;
         gpu.checked(|| {
             let inputs = input_layout(gpu.device());
             let pipeline = pipeline(gpu.device(), &module, &[Some(&tables), Some(&inputs)]);
@@ -109,7 +109,7 @@ impl Forward {
         check_size(gpu, view)?;
         let uniform = uniform(view, material, lights.len(), tables)?;
         let lights = EncodedLights::of(lights, self.textures.as_ref())?;
-        let bound = bind_group(gpu, &self.tables, tables, self.textures.as_ref())?;
+        let bound = textured_group(gpu, &self.tables, tables, self.textures.as_ref())?;
         let bytes = gpu.checked(|| {
             let inputs = self.bind_inputs(gpu, &uniform, &lights);
             let pixels = self.render(gpu, view, triangles, &bound, &inputs);

@@ -42,7 +42,7 @@ impl Lookups {
     /// [`GpuError::Device`].
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let module = compile(gpu, Program::Lookup(gpu.filtering()))?;
-        let tables = bind_group_layout(gpu, false)?;
+        let tables = bind_group_layout(gpu)?;
         Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(&tables), 1)?, tables })
     }
 
@@ -67,7 +67,7 @@ impl Lookups {
             Kind::Isotropic => Tables { isotropic: Some(table), anisotropic: None },
             Kind::Anisotropic => Tables { isotropic: None, anisotropic: Some(table) },
         };
-        let bound = bind_group(gpu, &self.tables, tables, None)?;
+        let bound = bind_group(gpu, &self.tables, tables)?;
         let mut results = Vec::with_capacity(queries.len());
         for chunk in jobs.chunks(CHUNK) {
             let batch = Batch {

@@ -5,7 +5,7 @@ use wgpu::BindGroupLayout;
 use crate::compute::{Batch, Kernel, compile};
 use crate::light::EncodedLights;
 use crate::modules::Program;
-use crate::table_textures::{bind_group, bind_group_layout};
+use crate::table_textures::{textured_group, textured_layout};
 use crate::{AreaLight, Gpu, GpuError, LightTextures, SurfacePoint, Tables};
 
 /// Points that go to the device at once: 12 MiB of G-buffer.
@@ -44,7 +44,7 @@ impl Shader {
 
     fn compiled(gpu: &Gpu, program: Program, textures: Option<LightTextures>) -> Result<Self, GpuError> {
         let module = compile(gpu, program)?;
-        let tables = bind_group_layout(gpu, textures.is_some())?;
+        let tables = textured_layout(gpu, textures.is_some())?;
         Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(&tables), 3)?, tables, textures })
     }
 
@@ -64,7 +64,7 @@ impl Shader {
             EncodedLights::of(lights, self.textures.as_ref())?;
         let point_buffer =
             points.iter().enumerate().map(|(i, p)| p.encode(i, tables)).collect::<Result<Vec<_>, _>>()?;
-        let bound = bind_group(gpu, &self.tables, tables, self.textures.as_ref())?;
+        let bound = textured_group(gpu, &self.tables, tables, self.textures.as_ref())?;
         let mut radiance = Vec::with_capacity(points.len());
         for chunk in point_buffer.chunks(CHUNK) {
             let batch = Batch {

@@ -184,8 +184,13 @@ fn view_dimension(kind: Kind) -> TextureViewDimension {
     }
 }
 
-/// The bindings of group 0, as `tables_exact.wgsl` and `tables_hardware.wgsl` have them, and `light_textures.wgsl` if `textured`.
-pub(crate) fn bind_group_layout(gpu: &Gpu, textured: bool) -> Result<BindGroupLayout, GpuError> {
+/// The bindings of group 0, as `tables_exact.wgsl` and `tables_hardware.wgsl` have them.
+pub(crate) fn bind_group_layout(gpu: &Gpu) -> Result<BindGroupLayout, GpuError> {
+    textured_layout(gpu, false)
+}
+
+/// The same, with that of `light_textures.wgsl` if `textured`.
+pub(crate) fn textured_layout(gpu: &Gpu, textured: bool) -> Result<BindGroupLayout, GpuError> {
     let hardware = gpu.filtering() == Filtering::Hardware;
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
         binding,
@@ -228,8 +233,17 @@ pub(crate) fn bind_group_layout(gpu: &Gpu, textured: bool) -> Result<BindGroupLa
     })
 }
 
-/// Binds the tables that there are, placeholders for the others, and the textures that the layout was made with.
+/// Binds the tables that there are, and placeholders for the others.
 pub(crate) fn bind_group(
+    gpu: &Gpu,
+    layout: &BindGroupLayout,
+    tables: Tables<'_>,
+) -> Result<BindGroup, GpuError> {
+    textured_group(gpu, layout, tables, None)
+}
+
+/// The same, with the textures that [`textured_layout`] was made for.
+pub(crate) fn textured_group(
     gpu: &Gpu,
     layout: &BindGroupLayout,
     tables: Tables<'_>,
