@@ -9,6 +9,7 @@ mod lights;
 pub mod make;
 mod pairs;
 pub mod shapes;
+mod textured;
 pub mod tolerance;
 
 pub use back_end::{BackEnd, CpuF32, CpuF64, Gpu, Path};
@@ -17,6 +18,10 @@ pub use lights::{
     LightBackEnd, LightsF32, LightsF64, LightsOnGpu, condition, light_back_ends, light_jobs, matrix,
 };
 pub use pairs::{lit, lit_share, pairs, wide};
+pub use textured::{
+    TexturedBackEnd, TexturedOnCpu, TexturedOnGpu, texture, textured_back_ends, textured_jobs,
+    textured_matrix, textures,
+};
 
 use ltc_table::{Catalogue, Table};
 

@@ -42,6 +42,9 @@ const ERRORS: &[(&str, f64)] = &[
     ("sphere-lamp", 0.0720),
     ("sphere-lamps-small", 0.1060),
     ("strip-ceiling", 0.1441),
+    ("textured-checker-spheres", 0.0868),
+    ("textured-stained-glass", 0.1802),
+    ("textured-two-sided-star", 0.0672),
     ("two-sided-panel", 0.0564),
 ];
 

@@ -51,10 +51,10 @@ pub use ggx::Ggx;
 pub use light::{
     AnyLight, Cubic, Cylinder, Disk, EdgeForm, Ellipse, Exact, Horizon, Light, LightSample, Line,
     LineCylinder, LineSample, LtcBatch, Polygon, PolygonSampler, PublishedRational, Quad, QuadBatch,
-    Rational, SampleLight, Sides, Sphere, Strip, TextureFetch, TextureFrame, TexturedPolygon, clipped_sphere,
-    clipped_sphere_fit,
+    Rational, SampleLight, Sides, Sphere, Strip, TEXTURE_SIGMAS, TextureFetch, TextureFrame, TexturedPolygon,
+    clipped_sphere, clipped_sphere_fit,
 };
 pub use ltc::Ltc;
 pub use real::{Matrix, Real, Vector};
 pub use roughness::{ALPHA_MIN, Alpha, PerceptualRoughness};
-pub use texture::{PrefilteredTexture, TexelGrid};
+pub use texture::{PrefilteredTexture, TexelGrid, TextureLevel, TextureRow, TextureRows};

@@ -71,8 +71,44 @@ pub fn direct_light_visible(
     mut visible: impl FnMut(&LightHit) -> bool,
 ) -> Direct {
     let mut direct = Direct::default();
+    estimate(wo, ggx, light, samples, seed, |hit, weight| {
+        if visible(hit) {
+            direct.add(ggx, wo, hit.wi, weight);
+        }
+    });
+    direct
+}
+
+/// Direct light of a light whose `radiance(hit)` varies over it, one result a colour channel: as [`direct_light`] from the
+/// same samples.
+pub fn direct_light_coloured(
+    wo: DVec3,
+    ggx: &Ggx,
+    light: &impl Emitter,
+    samples: u32,
+    seed: u64,
+    radiance: impl Fn(&LightHit) -> DVec3,
+) -> [Direct; 3] {
+    let mut direct = [Direct::default(); 3];
+    estimate(wo, ggx, light, samples, seed, |hit, weight| {
+        for (channel, radiance) in direct.iter_mut().zip(radiance(hit).to_array()) {
+            channel.add(ggx, wo, hit.wi, weight * radiance);
+        }
+    });
+    direct
+}
+
+/// Gives every sample that meets the light to `add`, with its weight.
+fn estimate(
+    wo: DVec3,
+    ggx: &Ggx,
+    light: &impl Emitter,
+    samples: u32,
+    seed: u64,
+    mut add: impl FnMut(&LightHit, f64),
+) {
     if !wo.is_finite() || wo.z < 0.0 || !light.faces_origin() {
-        return direct;
+        return;
     }
     let streams = [0, 1, 2].map(|technique: u64| R2::shifted(seed.wrapping_mul(3).wrapping_add(technique)));
     for i in 0..u64::from(samples) {
@@ -83,14 +119,12 @@ pub fn direct_light_visible(
             light.hit(cosine_direction(cosine)),
         ];
         for hit in hits.into_iter().flatten() {
-            if hit.wi.z <= 0.0 || !visible(&hit) {
-                continue;
+            if hit.wi.z > 0.0 {
+                let density = hit.pdf + ggx.pdf(wo, hit.wi) + hit.wi.z / PI;
+                add(&hit, 1.0 / (density * f64::from(samples)));
             }
-            let density = hit.pdf + ggx.pdf(wo, hit.wi) + hit.wi.z / PI;
-            direct.add(ggx, wo, hit.wi, 1.0 / (density * f64::from(samples)));
         }
     }
-    direct
 }
 
 /// The unit view direction at `theta` from the normal and `phi` from the tangent, radians.

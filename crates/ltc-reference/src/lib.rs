@@ -13,6 +13,7 @@
 //! | a lobe over an ellipse, sphere or cylinder | [`integrate_ellipse`], [`integrate_sphere_light`], [`integrate_cylinder`] | the same |
 //! | the polygon for an LTC, another way | [`integrate_polygon_boundary`] | the same |
 //! | GGX and Lambert over any [`Emitter`], fast | [`direct_light`] | unbiased; a large light over a glossy surface: 2e-2 at 64 samples, 2e-3 at 1024 |
+//! | the same of a light whose colour varies | [`direct_light_coloured`], [`Picture`] | the same |
 //! | magnitude and Fresnel of a table | [`directional_albedo`] | the tolerance asked for |
 //! | Beckmann, Disney diffuse, Oren–Nayar, Charlie | [`BeckmannLobe`], [`DisneyDiffuseLobe`], [`OrenNayarLobe`], [`CharlieLobe`] | exact but for Beckmann's Λ (1e-14, by quadrature) |
 //! | mass of a lobe, leak of an LTC | [`lobe_mass`] | the tolerance asked for |
@@ -53,6 +54,7 @@ mod ggx;
 mod line;
 mod lobe;
 mod mass;
+mod picture;
 mod points;
 mod polygon;
 mod quadrature;
@@ -74,7 +76,7 @@ pub use chi_square::{ChiSquare, ChiSquareOptions, ChiSquareSuite, chi_square, ch
 pub use cubature::integrate_squares;
 pub use cylinder::{CylinderShape, integrate_cylinder};
 pub use diffuse::{DisneyDiffuseLobe, OrenNayarLobe};
-pub use direct::{Direct, direct_light, direct_light_visible, view_direction};
+pub use direct::{Direct, direct_light, direct_light_coloured, direct_light_visible, view_direction};
 pub use ellipse::integrate_ellipse;
 pub use emitter::{CylinderEmitter, EllipseEmitter, Emitter, PolygonEmitter, SphereEmitter};
 pub use error::ReferenceError;
@@ -82,6 +84,7 @@ pub use ggx::Ggx;
 pub use line::{ThinCylinder, integrate_cap, integrate_cylinder_wall, integrate_line, point_cap};
 pub use lobe::{AboveHorizon, CosineLobe, GgxLobe, Lobe, LtcLobe, LtcMixture, Scaled};
 pub use mass::lobe_mass;
+pub use picture::Picture;
 pub use points::{R2, SplitMix64, cosine_direction, sphere_direction};
 pub use polygon::{PolygonOptions, integrate_polygon};
 pub use quadrature::{Estimate, GaussLegendre, Tolerance, integrate_1d};

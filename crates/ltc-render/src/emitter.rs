@@ -3,17 +3,20 @@
 use glam::DVec3;
 use ltc_core::{AnyLight, InputError, Ltc, Sides};
 use ltc_reference::{
-    CylinderEmitter, Direct, EllipseEmitter, Emitter as Sampled, Ggx, PolygonEmitter, RectLight,
-    ReferenceError, SphereEmitter, direct_light,
+    CylinderEmitter, Direct, EllipseEmitter, Emitter as Sampled, Ggx, LightHit, PolygonEmitter, RectLight,
+    ReferenceError, SphereEmitter, direct_light, direct_light_coloured,
 };
 
 use crate::camera::Ray;
+use crate::texture_map::TextureMap;
 
 /// A light in world space.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Emitter {
     pub light: AnyLight,
     pub radiance: DVec3,
+    /// What multiplies the radiance of a polygon.
+    pub texture: Option<TextureMap>,
 }
 
 /// The same light as the reference samples it.
@@ -29,12 +32,12 @@ enum Reference {
 
 impl Emitter {
     /// Says what is wrong with a light without extent.
-    pub fn new(light: AnyLight, radiance: DVec3) -> Result<Self, String> {
+    pub fn new(light: AnyLight, radiance: DVec3, texture: Option<TextureMap>) -> Result<Self, String> {
         // What the constructors refuse, in their words.
         let words = |e: InputError| e.to_string();
         let fraction = light.integrate::<f64>(&Ltc::cosine(), ltc_core::Horizon::NONE);
         fraction.map_err(words)?;
-        let emitter = Self { light, radiance };
+        let emitter = Self { light, radiance, texture };
         match emitter.reference(|p| p, |v| v) {
             Ok(Reference::Nothing) => Err("has no area".to_owned()),
             Ok(_) => Ok(emitter),
@@ -117,7 +120,12 @@ impl Emitter {
         light.hit(ray.direction)
     }
 
-    /// What the reference makes of the light, seen by `point` and `direction`.
+    /// The radiance that a point of the light emits.
+    pub fn radiance_at(&self, point: DVec3) -> DVec3 {
+        self.radiance * self.texture.as_ref().map_or(DVec3::ONE, |map| map.colour(map.frame, point))
+    }
+
+    /// What the reference makes of the light, seen by `point` and `direction`: one result a channel.
     pub fn direct(
         &self,
         point: impl Fn(DVec3) -> DVec3,
@@ -126,15 +134,29 @@ impl Emitter {
         ggx: &Ggx,
         samples: u32,
         seed: u64,
-    ) -> Result<Direct, ReferenceError> {
-        Ok(match self.reference(point, direction)? {
+    ) -> Result<[Direct; 3], ReferenceError> {
+        let map = self.texture.as_ref().map(|map| (map, map.moved(&point, &direction)));
+        let light = self.reference(point, direction)?;
+        if let Some((map, frame)) = map {
+            let colour = |hit: &LightHit| map.colour(frame, hit.wi * hit.distance);
+            return Ok(match light {
+                Reference::Parallelogram(light) => {
+                    direct_light_coloured(wo, ggx, &light, samples, seed, colour)
+                }
+                Reference::Polygon(light) => direct_light_coloured(wo, ggx, &light, samples, seed, colour),
+                // No other light has a texture.
+                _ => [Direct::default(); 3],
+            });
+        }
+        let direct = match light {
             Reference::Nothing => Direct::default(),
             Reference::Parallelogram(light) => direct_light(wo, ggx, &light, samples, seed),
             Reference::Polygon(light) => direct_light(wo, ggx, &light, samples, seed),
             Reference::Ellipse(light) => direct_light(wo, ggx, &light, samples, seed),
             Reference::Sphere(light) => direct_light(wo, ggx, &light, samples, seed),
             Reference::Cylinder(light) => direct_light(wo, ggx, &light, samples, seed),
-        })
+        };
+        Ok([direct; 3])
     }
 }
 

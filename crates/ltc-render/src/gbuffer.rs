@@ -139,7 +139,7 @@ fn look(world: &World, ray: &Ray, sample: u64) -> Result<SurfacePoint, DVec3> {
             && distance < limit
         {
             limit = distance;
-            emitted = Some(light.radiance);
+            emitted = Some(light.radiance_at(ray.origin + ray.direction * distance));
         }
     }
     match (emitted, nearest) {

@@ -1,12 +1,15 @@
 //! Lights.
 
+use std::path::Path;
+
 use glam::DVec3;
 use ltc_core::{AnyLight, Sides};
 use serde::{Deserialize, Serialize};
 
-use crate::SceneError;
 use crate::emitter::Emitter;
+use crate::texture_map::TextureMap;
 use crate::validate::{color, direction, length, problem, range, vector};
+use crate::{SceneError, Texture};
 
 /// The largest intensity, and the largest channel of a colour: products stay far within `f32`.
 const BRIGHTEST: f64 = 1e9;
@@ -30,6 +33,9 @@ pub enum Light {
         /// Whether the back emits, too.
         #[serde(default)]
         two_sided: bool,
+        /// What multiplies the radiance; its `frame` says where it lies.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        texture: Option<Texture>,
     },
     /// A thin tube without caps, by the line approximation; the reference knows the true tube.
     Line {
@@ -157,16 +163,39 @@ pub struct Rectangle {
     /// Whether the back emits, too.
     #[serde(default)]
     pub two_sided: bool,
+    /// What multiplies the radiance; it fills the rectangle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub texture: Option<Texture>,
 }
 
 impl Light {
-    /// `field` is the path of the light in the scene, for errors.
-    pub(crate) fn resolve(&self, field: &str) -> Result<Emitter, SceneError> {
+    /// `field` is the path of the light in the scene, for errors; files of textures are relative to `folder`.
+    pub(crate) fn resolve(&self, field: &str, folder: &Path) -> Result<Emitter, SceneError> {
         let shape = self.shape(field)?;
+        let texture = self.texture(&shape, &format!("{field}.texture"), folder)?;
         let (colour, intensity) = self.strength();
         let colour = color(&format!("{field}.color"), colour, BRIGHTEST)?;
         let intensity = range(&format!("{field}.intensity"), intensity, 0.0, BRIGHTEST)?;
-        Emitter::new(shape, colour * intensity).map_err(|reason| problem(field, reason))
+        Emitter::new(shape, colour * intensity, texture).map_err(|reason| problem(field, reason))
+    }
+
+    fn texture(
+        &self,
+        shape: &AnyLight,
+        field: &str,
+        folder: &Path,
+    ) -> Result<Option<TextureMap>, SceneError> {
+        let AnyLight::Polygon { vertices, .. } = shape else { return Ok(None) };
+        let vertices: Vec<DVec3> = vertices.iter().map(|v| DVec3::from_array(*v)).collect();
+        match (self, vertices.as_slice()) {
+            (Self::Rectangle(Rectangle { texture: Some(texture), .. }), &[a, b, c, d]) => {
+                texture.on_rectangle(&[a, b, c, d], field, folder).map(Some)
+            }
+            (Self::Polygon { texture: Some(texture), .. }, vertices) => {
+                texture.on_polygon(vertices, field, folder).map(Some)
+            }
+            _ => Ok(None),
+        }
     }
 
     fn strength(&self) -> ([f64; 3], f64) {
@@ -280,7 +309,7 @@ mod tests {
 
     fn resolve(json: &str) -> Result<Emitter, String> {
         let light: Light = serde_json::from_str(json).map_err(|e| e.to_string())?;
-        light.resolve("lights[0]").map_err(|e| e.to_string())
+        light.resolve("lights[0]", Path::new("")).map_err(|e| e.to_string())
     }
 
     const CEILING: &str = r#"{"type": "rectangle", "center": [0, 2, 0], "half_u": [1, 0, 0], "half_v": [0, 0, 3],

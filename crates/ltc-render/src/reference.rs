@@ -48,9 +48,11 @@ impl Reference<'_> {
                 self.samples,
                 seed,
             )?;
-            let f90 = DVec3::splat(material.f90);
-            let reflected = direct.specular_rgb(material.f0, f90) + material.albedo * direct.diffuse;
-            sum += light.radiance * reflected;
+            let reflected = [0, 1, 2].map(|channel| {
+                let seen = direct[channel];
+                seen.specular(material.f0[channel], material.f90) + seen.diffuse(material.albedo[channel])
+            });
+            sum += light.radiance * DVec3::from_array(reflected);
         }
         Ok(sum)
     }

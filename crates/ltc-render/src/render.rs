@@ -2,13 +2,17 @@
 
 use std::time::Instant;
 
+use ltc_core::PrefilteredTexture;
 use ltc_table::{Kind, Table};
+use rayon::prelude::*;
 
 use crate::cpu::Cpu;
+use crate::emitter::Emitter;
 use crate::gbuffer::GBuffer;
 use crate::reference::Reference;
 use crate::scene::World;
 use crate::shader::Shade;
+use crate::texture_map::TextureMap;
 use crate::{Image, RenderError, Scene};
 
 /// What shades.
@@ -121,11 +125,18 @@ fn open<'a>(
         Backend::Gpu => Box::new(crate::gpu::GpuBackend::open(tables, lights)?),
         #[cfg(not(feature = "gpu"))]
         Backend::Gpu => return Err(RenderError::NoGpuBackend),
-        Backend::Cpu => Box::new(Cpu { tables, lights }),
+        Backend::Cpu => Box::new(Cpu { tables, lights, textures: prefiltered(lights)? }),
         Backend::Reference => {
             Box::new(Reference { lights, samples: options.reference_samples, seed: options.seed })
         }
     })
+}
+
+/// The lights' textures, one for each light.
+pub(crate) fn prefiltered(lights: &[Emitter]) -> Result<Vec<Option<PrefilteredTexture>>, RenderError> {
+    let textures =
+        lights.par_iter().map(|light| light.texture.as_ref().map(TextureMap::prefiltered).transpose());
+    Ok(textures.collect::<Result<_, _>>()?)
 }
 
 impl RenderOptions<'_> {

@@ -1,6 +1,6 @@
 //! Scenes.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -24,6 +24,9 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// What lights it; visible to the camera.
     pub lights: Vec<Light>,
+    /// What the names of textures' files are relative to: the folder of the scene's own file, set by [`Scene::load`].
+    #[serde(skip)]
+    pub folder: PathBuf,
 }
 
 /// A checked scene, ready for rendering.
@@ -46,8 +49,9 @@ impl Scene {
         let name = path.display().to_string();
         let text = std::fs::read_to_string(path)
             .map_err(|source| RenderError::Read { path: name.clone(), source })?;
-        let scene: Self =
+        let mut scene: Self =
             serde_json::from_str(&text).map_err(|source| RenderError::Json { path: name, source })?;
+        scene.folder = path.parent().map(Path::to_owned).unwrap_or_default();
         scene.validate()?;
         Ok(scene)
     }
@@ -70,7 +74,7 @@ impl Scene {
             world.materials.push(object.material().resolve(&format!("{field}.material"))?);
         }
         for (i, light) in self.lights.iter().enumerate() {
-            world.lights.push(light.resolve(&format!("lights[{i}]"))?);
+            world.lights.push(light.resolve(&format!("lights[{i}]"), &self.folder)?);
         }
         Ok(world)
     }

@@ -92,7 +92,7 @@ impl<'a> Bench<'a> {
 }
 
 fn light(shape: LightShape) -> AreaLight {
-    AreaLight { shape, radiance: Vec3::ONE }
+    AreaLight::new(shape, Vec3::ONE)
 }
 
 fn shapes() -> Vec<LightShape> {

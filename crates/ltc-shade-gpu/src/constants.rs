@@ -9,6 +9,8 @@ use crate::LightKind;
 pub(crate) const TWO_SIDED: u32 = 1 << 8;
 /// A cylinder with caps.
 pub(crate) const CAPS: u32 = 1 << 9;
+/// A flat light with a texture.
+pub(crate) const TEXTURED: u32 = 1 << 10;
 
 /// What stands for a mapping in a shader; the WGSL constants are generated from it.
 pub(crate) fn mapping_code(mapping: Mapping) -> u32 {
@@ -48,5 +50,6 @@ pub(crate) fn light_constants() -> String {
         text.push_str(&format!("const LIGHT_{name}: u32 = {}u;\n", kind as u32));
     }
     text.push_str(&format!("const LIGHT_TWO_SIDED: u32 = {TWO_SIDED}u;\nconst LIGHT_CAPS: u32 = {CAPS}u;\n"));
+    text.push_str(&format!("const LIGHT_TEXTURED: u32 = {TEXTURED}u;\n"));
     text
 }

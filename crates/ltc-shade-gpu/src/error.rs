@@ -89,6 +89,34 @@ pub enum GpuError {
         /// What is wrong.
         source: InputError,
     },
+    /// The textures of lights do not fit the device together.
+    #[error("the textures of the lights together are {found} texels {what}, the device allows {limit}")]
+    TexturesTooLarge {
+        /// `wide` or `high`.
+        what: &'static str,
+        /// What they need.
+        found: u32,
+        /// What the device has.
+        limit: u32,
+    },
+    /// A light names a texture that is not there; there are none in pipelines without textures.
+    #[error("light {light} has texture number {texture}, of {count}")]
+    MissingTexture {
+        /// The index of the light.
+        light: usize,
+        /// The number that it names.
+        texture: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A light that is not flat and bounded by edges has a texture.
+    #[error("light {light} is a {kind}; only quads and polygons have textures")]
+    NotTexturable {
+        /// The index of the light.
+        light: usize,
+        /// What it is.
+        kind: crate::LightKind,
+    },
     /// A single item is larger than a buffer of the device.
     #[error("{what} takes {bytes} bytes, the device's buffers hold {limit}")]
     TooLarge {

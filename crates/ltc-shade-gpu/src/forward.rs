@@ -9,8 +9,8 @@ use crate::compute::{compile, read_back};
 use crate::layout::ForwardLayout;
 use crate::light::EncodedLights;
 use crate::modules::Program;
-use crate::table_textures::{bind_group, bind_group_layout};
-use crate::{AreaLight, Gpu, GpuError, SurfacePoint, Tables};
+use crate::table_textures::{textured_group, textured_layout};
+use crate::{AreaLight, Gpu, GpuError, LightTextures, SurfacePoint, Tables};
 
 /// What is drawn into: four floats a pixel.
 const TARGET: TextureFormat = TextureFormat::Rgba32Float;
@@ -61,6 +61,7 @@ pub struct Forward {
     pipeline: wgpu::RenderPipeline,
     tables: BindGroupLayout,
     inputs: BindGroupLayout,
+    textures: Option<LightTextures>,
 }
 
 impl Forward {
@@ -69,12 +70,24 @@ impl Forward {
     /// # Errors
     /// [`GpuError::Device`].
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let module = compile(gpu, Program::Forward(gpu.filtering()))?;
-        let tables = bind_group_layout(gpu)?;
+        Self::compiled(gpu, Program::Forward(gpu.filtering()), None)
+    }
+
+    /// As [`crate::Shader::with_textures`].
+    ///
+    /// # Errors
+    /// [`GpuError::Device`].
+    pub fn with_textures(gpu: &Gpu, textures: LightTextures) -> Result<Self, GpuError> {
+        Self::compiled(gpu, Program::ForwardTextured(gpu.filtering()), Some(textures))
+    }
+
+    fn compiled(gpu: &Gpu, program: Program, textures: Option<LightTextures>) -> Result<Self, GpuError> {
+        let module = compile(gpu, program)?;
+        let tables = textured_layout(gpu, textures.is_some())?;
         gpu.checked(|| {
             let inputs = input_layout(gpu.device());
             let pipeline = pipeline(gpu.device(), &module, &[Some(&tables), Some(&inputs)]);
-            Ok(Self { pipeline, tables: tables.clone(), inputs })
+            Ok(Self { pipeline, tables: tables.clone(), inputs, textures })
         })
     }
 
@@ -95,8 +108,8 @@ impl Forward {
     ) -> Result<Vec<[f32; 4]>, GpuError> {
         check_size(gpu, view)?;
         let uniform = uniform(view, material, lights.len(), tables)?;
-        let lights = EncodedLights::of(lights)?;
-        let bound = bind_group(gpu, &self.tables, tables)?;
+        let lights = EncodedLights::of(lights, self.textures.as_ref())?;
+        let bound = textured_group(gpu, &self.tables, tables, self.textures.as_ref())?;
         let bytes = gpu.checked(|| {
             let inputs = self.bind_inputs(gpu, &uniform, &lights);
             let pixels = self.render(gpu, view, triangles, &bound, &inputs);

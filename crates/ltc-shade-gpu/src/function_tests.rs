@@ -94,32 +94,6 @@ fn textures_are_fetched_where_the_cpu_fetches_them() {
 }
 
 #[test]
-fn levels_of_a_texture_double_and_widen_outside() {
-    // Coordinates and sigma; finest 1/64, 9 levels up to 4.
-    let inputs = [
-        [0.5, 0.5, 0.0, 0.0],
-        [0.5, 0.5, 1.0 / 64.0, 0.0],
-        [0.5, 0.5, 0.0234375, 0.0],
-        [0.5, 0.5, 100.0, 0.0],
-        [-1.0, 0.5, 0.01, 0.0],
-        [0.5, 2.0, 0.01, 0.0],
-    ];
-    let body = "
-        let level = ltc_texture_level(LtcTextureFetch(inputs[first].xy, inputs[first].z), 0.015625, 9u);
-        let place = ltc_texture_place(inputs[first].xy, 0.5);
-        results[id.x] = vec4f(f32(level.layer) + level.t, f32(level.next), place);";
-    let Some(results) = run(&["textured"], &[], body, &inputs, 1) else { return };
-    // log2(1.5) between the first two levels; half the distance outside as sigma: 0.5 is 5 levels up.
-    for (result, expected) in results.iter().zip([0.0, 0.0, 1.5_f32.log2(), 8.0, 5.0, 5.0]) {
-        assert!((result[0] - expected).abs() < 1e-4, "{result:?} {expected}");
-    }
-    assert_eq!(results[3][1], 8.0, "the last level is its own next");
-    // A margin of two around the square.
-    assert_eq!(results[0][2..], [0.5, 0.5]);
-    assert_eq!(results[4][2], 1.0 / 5.0);
-}
-
-#[test]
 fn gltf_materials_are_what_the_extension_says() {
     let inputs = [[0.8, 0.4, 0.1, 0.25], [0.6, 0.5, 0.0, 0.0], [1.0, 1.0, 0.7, 0.0], [0.0, 0.0, 0.0, 0.0]];
     // Roughness, metallic, strength, rotation.

@@ -74,6 +74,8 @@ pub(crate) struct SurfaceLayout {
 /// |---|---|---|---|---|---|
 /// | quad | corner | | corner | corner | corner |
 /// | polygon | first vertex, count (as bits) | | | | |
+/// | textured quad | corner | texture | corner | corner | corner |
+/// | textured polygon | first vertex, count (as bits) | | origin, b.w texture | axis u | axis v |
 /// | line, with caps or not | end | radius | end | | |
 /// | strip | end | width | end | normal | |
 /// | cylinder | end | radius | end | | |

@@ -56,6 +56,8 @@ mod layout;
 #[cfg(feature = "device")]
 mod light;
 #[cfg(feature = "device")]
+mod light_textures;
+#[cfg(feature = "device")]
 mod lookup;
 pub mod modules;
 #[cfg(feature = "device")]
@@ -67,6 +69,9 @@ mod shade;
 mod surface;
 #[cfg(feature = "device")]
 mod table_textures;
+mod texture_atlas;
+#[cfg(feature = "device")]
+mod textured;
 
 #[cfg(feature = "device")]
 pub use device::{Gpu, GpuInfo, GpuOptions, Texels};
@@ -82,6 +87,8 @@ pub use integrate::{LightJob, Lights, PolygonJob, Polygons};
 #[cfg(feature = "device")]
 pub use light::{AreaLight, LightShape};
 #[cfg(feature = "device")]
+pub use light_textures::{LightTexture, LightTextures};
+#[cfg(feature = "device")]
 pub use lookup::{LookupResult, Lookups};
 #[cfg(feature = "device")]
 pub use probe::{Finding, ProbeReport, Verdict, probe};
@@ -92,3 +99,6 @@ pub use shade::Shader;
 pub use surface::SurfacePoint;
 #[cfg(feature = "device")]
 pub use table_textures::{TableTextures, Tables};
+pub use texture_atlas::TextureAtlas;
+#[cfg(feature = "device")]
+pub use textured::{TexturedJob, TexturedLights};

@@ -7,9 +7,9 @@ use ltc_core::{
     Real, Sides, Sphere, Strip, Vector as _, check_range,
 };
 
-use crate::constants::{CAPS, TWO_SIDED};
+use crate::constants::{CAPS, TEXTURED, TWO_SIDED};
 use crate::layout::LightLayout;
-use crate::{GpuError, LightKind};
+use crate::{GpuError, LightKind, LightTexture, LightTextures};
 
 /// The shape of a light: relative to the shading point in the shading frame for integrals, in world space for shading. The
 /// fields are those of [`AnyLight`] in `f32`.
@@ -199,6 +199,43 @@ impl LightShape {
         let bits = self.kind() as u32 | self.flags();
         LightLayout { a, b, c, d, radiance: radiance.to_array(), bits }
     }
+
+    /// The record of a light with a texture; `None` for shapes that have none. Quads that their texture does not fill are polygons
+    /// there.
+    pub(crate) fn encode_textured(
+        &self,
+        radiance: Vec3,
+        texture: &LightTexture,
+        vertices: &mut Vec<[f32; 4]>,
+    ) -> Option<LightLayout> {
+        // As a float and not as bits, which some hardware would flush to zero.
+        let number = texture.number as f32;
+        let mut record = match self {
+            Self::Quad { corners, .. } if *texture == LightTexture::filling(texture.number, corners) => {
+                let mut record = self.encode(radiance, vertices);
+                record.a[3] = number;
+                record
+            }
+            Self::Quad { corners, sides } => {
+                let polygon = Self::Polygon { vertices: corners.to_vec(), sides: *sides };
+                return polygon.encode_textured(radiance, texture, vertices);
+            }
+            Self::Polygon { .. } => {
+                let record = self.encode(radiance, vertices);
+                let four = |p: Vec3, w: f32| [p.x, p.y, p.z, w];
+                let frame = &texture.frame;
+                LightLayout {
+                    b: four(frame.origin, number),
+                    c: four(frame.axis_u, 0.0),
+                    d: four(frame.axis_v, 0.0),
+                    ..record
+                }
+            }
+            _ => return None,
+        };
+        record.bits |= TEXTURED;
+        Some(record)
+    }
 }
 
 /// A light of the scene: a shape in world space that emits the same radiance in all directions of its emitting sides.
@@ -209,12 +246,35 @@ pub struct AreaLight {
     /// Emitted radiance, linear RGB, in W/(m²·sr) or nits: what is shaded comes out in the same unit. This is the
     /// intensity of the light as seen, whatever its size; its power grows with its area.
     pub radiance: Vec3,
+    /// What multiplies the radiance, for quads and polygons.
+    pub texture: Option<LightTexture>,
 }
 
 impl AreaLight {
-    pub(crate) fn encode(&self, index: usize, vertices: &mut Vec<[f32; 4]>) -> Result<LightLayout, GpuError> {
+    /// A light of one colour.
+    pub fn new(shape: LightShape, radiance: Vec3) -> Self {
+        Self { shape, radiance, texture: None }
+    }
+
+    /// `textures` are those of the pipeline, if it has any.
+    pub(crate) fn encode(
+        &self,
+        index: usize,
+        vertices: &mut Vec<[f32; 4]>,
+        textures: Option<&LightTextures>,
+    ) -> Result<LightLayout, GpuError> {
         self.check().map_err(GpuError::input("light", index))?;
-        Ok(self.shape.encode(self.radiance, vertices))
+        let Some(texture) = &self.texture else { return Ok(self.shape.encode(self.radiance, vertices)) };
+        match textures {
+            Some(textures) => textures.check(texture, self.radiance, index)?,
+            None => {
+                let texture = texture.number;
+                return Err(GpuError::MissingTexture { light: index, texture, count: 0 });
+            }
+        }
+        let kind = self.shape.kind();
+        let textured = self.shape.encode_textured(self.radiance, texture, vertices);
+        textured.ok_or(GpuError::NotTexturable { light: index, kind })
     }
 
     fn check(&self) -> Result<(), InputError> {
@@ -236,9 +296,9 @@ pub(crate) struct EncodedLights {
 
 impl EncodedLights {
     /// Neither buffer is empty, as none can be: counts say what is in them.
-    pub fn of(lights: &[AreaLight]) -> Result<Self, GpuError> {
+    pub fn of(lights: &[AreaLight], textures: Option<&LightTextures>) -> Result<Self, GpuError> {
         let mut vertices = Vec::new();
-        let records = lights.iter().enumerate().map(|(i, light)| light.encode(i, &mut vertices));
+        let records = lights.iter().enumerate().map(|(i, light)| light.encode(i, &mut vertices, textures));
         let mut records = records.collect::<Result<Vec<_>, _>>()?;
         if records.is_empty() {
             records.push(LightLayout::zeroed());

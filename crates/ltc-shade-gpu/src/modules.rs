@@ -86,7 +86,9 @@ pub const MODULES: &[Module] = &[
             "sphere"
         ]
     ),
+    module!(false, "light_textures", ["lights", "textured"]),
     module!(false, "integrate_main", ["lights"]),
+    module!(false, "integrate_textured_main", ["light_textures"]),
     module!(false, "lookup_main", ["table"]),
     module!(false, "shade", ["lights", "fresnel", "table"]),
     module!(false, "shade_main", ["shade"]),
@@ -95,6 +97,8 @@ pub const MODULES: &[Module] = &[
 
 /// What the programs of this crate are composed with.
 const OWN_SYMBOLS: &[&str] = &["surface_horizon", "cosine_horizon", "two_sided"];
+/// The same with textures of lights.
+const TEXTURED_SYMBOLS: &[&str] = &["surface_horizon", "cosine_horizon", "two_sided", "light_textures"];
 
 /// What can be run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,11 +111,17 @@ pub enum Program {
     Shade(Filtering),
     /// Forward shading: entry points `vertex_main` and `fragment_main`.
     Forward(Filtering),
+    /// Textured lights under lobes: entry point `main`.
+    IntegrateTextured,
+    /// As `Shade`, for lights with textures among others.
+    ShadeTextured(Filtering),
+    /// As `Forward`, for lights with textures among others.
+    ForwardTextured(Filtering),
 }
 
 impl Program {
     /// Every program there is.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 17] = [
         Self::Integrate,
         Self::Lookup(Filtering::Exact),
         Self::Lookup(Filtering::Hardware),
@@ -122,6 +132,13 @@ impl Program {
         Self::Lookup(Filtering::Buffer),
         Self::Shade(Filtering::Buffer),
         Self::Forward(Filtering::Buffer),
+        Self::IntegrateTextured,
+        Self::ShadeTextured(Filtering::Exact),
+        Self::ShadeTextured(Filtering::Hardware),
+        Self::ShadeTextured(Filtering::Buffer),
+        Self::ForwardTextured(Filtering::Exact),
+        Self::ForwardTextured(Filtering::Hardware),
+        Self::ForwardTextured(Filtering::Buffer),
     ];
 
     /// The modules to begin with; the rest follows from what they need.
@@ -137,12 +154,23 @@ impl Program {
             Self::Shade(Filtering::Hardware) => &["tables_hardware", "shade_main"],
             Self::Forward(Filtering::Exact) => &["tables_exact", "forward_main"],
             Self::Forward(Filtering::Hardware) => &["tables_hardware", "forward_main"],
+            Self::IntegrateTextured => &["integrate_textured_main"],
+            Self::ShadeTextured(Filtering::Buffer) => &["tables_buffer", "light_textures", "shade_main"],
+            Self::ShadeTextured(Filtering::Exact) => &["tables_exact", "light_textures", "shade_main"],
+            Self::ShadeTextured(Filtering::Hardware) => &["tables_hardware", "light_textures", "shade_main"],
+            Self::ForwardTextured(Filtering::Buffer) => &["tables_buffer", "light_textures", "forward_main"],
+            Self::ForwardTextured(Filtering::Exact) => &["tables_exact", "light_textures", "forward_main"],
+            Self::ForwardTextured(Filtering::Hardware) => {
+                &["tables_hardware", "light_textures", "forward_main"]
+            }
         }
     }
 
     /// The whole WGSL text.
     pub fn source(self) -> String {
-        compose(self.roots(), OWN_SYMBOLS)
+        let textured =
+            matches!(self, Self::IntegrateTextured | Self::ShadeTextured(_) | Self::ForwardTextured(_));
+        compose(self.roots(), if textured { TEXTURED_SYMBOLS } else { OWN_SYMBOLS })
     }
 }
 
@@ -238,7 +266,7 @@ mod tests {
         for program in Program::ALL {
             let module = validate(&program.source()).unwrap_or_else(|e| panic!("{program:?}: {e}"));
             let names: Vec<_> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
-            let forward = matches!(program, Program::Forward(_));
+            let forward = matches!(program, Program::Forward(_) | Program::ForwardTextured(_));
             let expected = if forward { vec!["vertex_main", "fragment_main"] } else { vec!["main"] };
             assert_eq!(names, expected, "{program:?}");
         }

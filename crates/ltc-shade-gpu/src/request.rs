@@ -88,7 +88,7 @@ pub enum Feature {
     TwoSided,
     /// Angles of edges by a rational function instead of an arc tangent.
     RationalEdges,
-    /// Where a textured light's filtered texture is fetched.
+    /// The colour of textured quads and polygons, out of one texture that holds all of theirs ([`crate::TextureAtlas`]).
     Textured,
     /// Schlick's Fresnel term from F0 and F90 and a table's two channels.
     Fresnel,
@@ -146,7 +146,7 @@ impl Feature {
             Self::CosineHorizon => "cuts lights at the horizon of cosine space",
             Self::TwoSided => "flat lights take a parameter that says whether their back emits",
             Self::RationalEdges => "angles of edges by a rational function instead of an arc tangent",
-            Self::Textured => "where and how wide a textured light's texture is fetched",
+            Self::Textured => "the colour of textured quads and polygons, from one texture for all",
             Self::Fresnel => "reflectance from F0, F90 and a table's two channels",
             Self::Material => "glTF's metallic-roughness parameters, with anisotropy",
             Self::Frame => "the shading frame from normal and tangent",
@@ -319,6 +319,10 @@ impl ShaderRequest {
             [Feature::Textured, Feature::Fresnel, Feature::Material, Feature::Frame]
                 .map(|feature| Self::new([], [feature])),
         );
+        list.push(Self::new(
+            [LightKind::Quad, LightKind::Polygon],
+            [Feature::Textured, Feature::SurfaceHorizon, Feature::CosineHorizon],
+        ));
         list.push(Self::new(LightKind::ALL, Feature::ALL));
         list
     }

@@ -5,8 +5,8 @@ use wgpu::BindGroupLayout;
 use crate::compute::{Batch, Kernel, compile};
 use crate::light::EncodedLights;
 use crate::modules::Program;
-use crate::table_textures::{bind_group, bind_group_layout};
-use crate::{AreaLight, Gpu, GpuError, SurfacePoint, Tables};
+use crate::table_textures::{textured_group, textured_layout};
+use crate::{AreaLight, Gpu, GpuError, LightTextures, SurfacePoint, Tables};
 
 /// Points that go to the device at once: 12 MiB of G-buffer.
 const CHUNK: usize = 1 << 17;
@@ -21,6 +21,7 @@ const CHUNK: usize = 1 << 17;
 pub struct Shader {
     kernel: Kernel,
     tables: BindGroupLayout,
+    textures: Option<LightTextures>,
 }
 
 impl Shader {
@@ -29,16 +30,29 @@ impl Shader {
     /// # Errors
     /// [`GpuError::Device`].
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let module = compile(gpu, Program::Shade(gpu.filtering()))?;
-        let tables = bind_group_layout(gpu)?;
-        Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(&tables), 3)?, tables })
+        Self::compiled(gpu, Program::Shade(gpu.filtering()), None)
+    }
+
+    /// Compiles the pipeline for lights of which some have these textures: their radiance is multiplied with the colour that the
+    /// lobe sees of the texture ([`ltc_core::TexturedPolygon`] has the formula and its error).
+    ///
+    /// # Errors
+    /// [`GpuError::Device`].
+    pub fn with_textures(gpu: &Gpu, textures: LightTextures) -> Result<Self, GpuError> {
+        Self::compiled(gpu, Program::ShadeTextured(gpu.filtering()), Some(textures))
+    }
+
+    fn compiled(gpu: &Gpu, program: Program, textures: Option<LightTextures>) -> Result<Self, GpuError> {
+        let module = compile(gpu, program)?;
+        let tables = textured_layout(gpu, textures.is_some())?;
+        Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(&tables), 3)?, tables, textures })
     }
 
     /// Radiance towards the eye of each point, linear RGB, in the unit of the lights' radiance.
     ///
     /// # Errors
     /// [`GpuError::Input`] and [`GpuError::NotIsotropic`] with the index of the first invalid point or light,
-    /// [`GpuError::MissingTable`]; then nothing is run.
+    /// [`GpuError::MissingTable`], [`GpuError::MissingTexture`]; then nothing is run.
     pub fn shade(
         &self,
         gpu: &Gpu,
@@ -46,10 +60,11 @@ impl Shader {
         points: &[SurfacePoint],
         lights: &[AreaLight],
     ) -> Result<Vec<[f32; 3]>, GpuError> {
-        let EncodedLights { records: light_buffer, vertices } = EncodedLights::of(lights)?;
+        let EncodedLights { records: light_buffer, vertices } =
+            EncodedLights::of(lights, self.textures.as_ref())?;
         let point_buffer =
             points.iter().enumerate().map(|(i, p)| p.encode(i, tables)).collect::<Result<Vec<_>, _>>()?;
-        let bound = bind_group(gpu, &self.tables, tables)?;
+        let bound = textured_group(gpu, &self.tables, tables, self.textures.as_ref())?;
         let mut radiance = Vec::with_capacity(points.len());
         for chunk in point_buffer.chunks(CHUNK) {
             let batch = Batch {

@@ -6,7 +6,7 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
 use wgpu::{BindGroup, BindGroupLayout, ShaderStages, Texture, TextureDimension, TextureViewDimension};
 
 use crate::layout::AxesUniform;
-use crate::{Filtering, Gpu, GpuError, Texels};
+use crate::{Filtering, Gpu, GpuError, LightTextures, Texels};
 
 /// A table on the device: three RGBA groups in the layout of [`ltc_table::ktx2`], and its axes.
 #[derive(Debug)]
@@ -186,6 +186,11 @@ fn view_dimension(kind: Kind) -> TextureViewDimension {
 
 /// The bindings of group 0, as `tables_exact.wgsl` and `tables_hardware.wgsl` have them.
 pub(crate) fn bind_group_layout(gpu: &Gpu) -> Result<BindGroupLayout, GpuError> {
+    textured_layout(gpu, false)
+}
+
+/// The same, with that of `light_textures.wgsl` if `textured`.
+pub(crate) fn textured_layout(gpu: &Gpu, textured: bool) -> Result<BindGroupLayout, GpuError> {
     let hardware = gpu.filtering() == Filtering::Hardware;
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
         binding,
@@ -219,6 +224,7 @@ pub(crate) fn bind_group_layout(gpu: &Gpu) -> Result<BindGroupLayout, GpuError> 
     if hardware {
         entries.push(entry(4, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)));
     }
+    entries.extend(textured.then(LightTextures::layout_entry));
     gpu.checked(|| {
         let label = Some("ltc tables");
         Ok(gpu
@@ -232,6 +238,16 @@ pub(crate) fn bind_group(
     gpu: &Gpu,
     layout: &BindGroupLayout,
     tables: Tables<'_>,
+) -> Result<BindGroup, GpuError> {
+    textured_group(gpu, layout, tables, None)
+}
+
+/// The same, with the textures that [`textured_layout`] was made for.
+pub(crate) fn textured_group(
+    gpu: &Gpu,
+    layout: &BindGroupLayout,
+    tables: Tables<'_>,
+    textures: Option<&LightTextures>,
 ) -> Result<BindGroup, GpuError> {
     gpu.checked(|| {
         let placeholders =
@@ -262,10 +278,12 @@ pub(crate) fn bind_group(
         if gpu.filtering() == Filtering::Hardware {
             resources.push(wgpu::BindingResource::Sampler(&sampler));
         }
-        let entries: Vec<_> = (0..)
+        let mut entries: Vec<_> = (0..)
             .zip(resources)
             .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
             .collect();
+        let textures = textures.map(LightTextures::view);
+        entries.extend(textures.as_ref().map(LightTextures::entry));
         let label = Some("ltc tables");
         Ok(device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries }))
     })

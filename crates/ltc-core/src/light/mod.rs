@@ -55,7 +55,7 @@ pub use sample::{LightSample, SampleLight};
 pub(crate) use solid_angle::{half_triangle, sum_of_units};
 pub use sphere::Sphere;
 pub use strip::Strip;
-pub use textured::{TextureFetch, TextureFrame, TexturedPolygon};
+pub use textured::{TEXTURE_SIGMAS, TextureFetch, TextureFrame, TexturedPolygon};
 
 use crate::{Ltc, Real};
 

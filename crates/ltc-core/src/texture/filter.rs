@@ -82,31 +82,47 @@ impl Taps {
         }
         sum
     }
+
+    /// The same for all columns of `rows` at once, row by row as they lie in memory.
+    fn apply_to_rows(&self, rows: &[TextureRow]) -> TextureRow {
+        let mut sums = vec![[0.0; 4]; rows[self.first].len()];
+        for (k, weight) in self.weights.iter().enumerate() {
+            for (sum, value) in sums.iter_mut().zip(&rows[self.first + k]) {
+                (0..4).for_each(|c| sum[c] += weight * value[c]);
+            }
+        }
+        sums
+    }
 }
+
+/// Colours times coverage, and coverage, of a row of texels.
+pub type TextureRow = Vec<[f64; 4]>;
+
+/// Computes rows 0 to n − 1, in whatever order and on whatever threads, and gives them in order.
+pub type TextureRows<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> TextureRow + Sync)) -> Vec<TextureRow>;
 
 /// Fills `level` with `∫ G L c / ∫ G c` over the texture: G the Gaussian of the level's σ around the texel, L the colour, c
 /// the coverage. `coarser` answers where no covered texel is in reach.
-pub(super) fn fill(level: &mut Level, source: &Source, coarser: impl Fn([f64; 2]) -> Colour) {
+pub(super) fn fill(
+    level: &mut Level,
+    source: &Source,
+    coarser: impl Fn([f64; 2]) -> Colour,
+    rows: TextureRows<'_>,
+) {
     let [across, down] =
         [0, 1].map(|axis| level.nodes(axis).map(|x| Taps::new(x, source.size[axis], level.sigma)).collect());
     let (across, down): (Vec<Taps>, Vec<Taps>) = (across, down);
     // Along u first, for every row of the source; then along v.
-    let width = level.size[0];
-    let mut rows = Vec::with_capacity(width * source.size[1]);
-    for j in 0..source.size[1] {
-        rows.extend(across.iter().map(|taps| taps.apply(|i| source.texels[j * source.size[0] + i])));
-    }
-    let v: Vec<f64> = level.nodes(1).collect();
+    let filtered = rows(source.size[1], &|j| {
+        across.iter().map(|taps| taps.apply(|i| source.texels[j * source.size[0] + i])).collect()
+    });
+    let sums = rows(level.size[1], &|j| down[j].apply_to_rows(&filtered));
     let u: Vec<f64> = level.nodes(0).collect();
-    level.texels = down
-        .iter()
-        .zip(v)
-        .flat_map(|(taps, v)| {
-            let rows = &rows;
-            u.iter().enumerate().map(move |(i, u)| (taps.apply(|j| rows[j * width + i]), [*u, v]))
-        })
-        .map(|(sum, uv)| normalised(sum).unwrap_or_else(|| coarser(uv)))
-        .collect();
+    let colours = level.nodes(1).zip(&sums).flat_map(|(v, row)| {
+        let coarser = &coarser;
+        row.iter().zip(&u).map(move |(sum, u)| normalised(*sum).unwrap_or_else(|| coarser([*u, v])))
+    });
+    level.texels = colours.collect();
 }
 
 /// Colour over coverage; `None` where nothing is covered.

@@ -15,7 +15,28 @@ pub(super) struct Level {
     pub texels: Vec<Colour>,
 }
 
+/// One level of a [`PrefilteredTexture`](super::PrefilteredTexture): texel (i, j) is at `(u, v) = low + (i, j) · spacing`. Its
+/// value is bilinear between texels and constant beyond them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureLevel<'a> {
+    /// Standard deviation of the Gaussian, in units of the texture's sides; 0 for the texture itself.
+    pub sigma: f64,
+    /// Texels in a row, and rows.
+    pub size: [usize; 2],
+    /// Coordinates of the first texel.
+    pub low: [f64; 2],
+    /// From one texel to the next.
+    pub spacing: [f64; 2],
+    /// Row by row, linear colours.
+    pub texels: &'a [[f32; 3]],
+}
+
 impl Level {
+    pub fn view(&self) -> TextureLevel<'_> {
+        let Self { sigma, size, low, spacing, texels } = self;
+        TextureLevel { sigma: *sigma, size: *size, low: *low, spacing: *spacing, texels }
+    }
+
     /// The value at (u, v); NaN is taken as 0.
     pub fn fetch(&self, uv: [f64; 2]) -> Colour {
         let [(i0, i1, s), (j0, j1, t)] = [0, 1].map(|axis| self.locate(axis, uv[axis]));

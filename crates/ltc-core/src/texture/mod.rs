@@ -4,4 +4,6 @@ mod filter;
 mod level;
 mod prefiltered;
 
+pub use filter::{TextureRow, TextureRows};
+pub use level::TextureLevel;
 pub use prefiltered::{PrefilteredTexture, TexelGrid};

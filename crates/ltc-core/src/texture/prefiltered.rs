@@ -1,7 +1,7 @@
 //! A texture and its Gaussian levels.
 
-use super::filter::{Source, fill};
-use super::level::{Level, mix};
+use super::filter::{Source, TextureRows, fill};
+use super::level::{Level, TextureLevel, mix};
 use crate::{InputError, check_range};
 
 /// Texels of an image: row by row, the first row at v = 0; linear colours, ≥ 0.
@@ -60,6 +60,15 @@ impl PrefilteredTexture {
     /// from `width · height`, a colour below 0, a coverage outside [0, 1]; [`InputError::NotFinite`] for a NaN or infinite
     /// one; [`InputError::Degenerate`] when nothing is covered.
     pub fn new(image: TexelGrid<'_>) -> Result<Self, InputError> {
+        Self::by_rows(image, &|count, row| (0..count).map(row).collect())
+    }
+
+    /// As [`PrefilteredTexture::new`], by a host that has threads: `rows(n, row)` gives `row(0)` to `row(n − 1)`, with rayon for
+    /// example `&|n, row| (0..n).into_par_iter().map(row).collect()`. The result is the same to the last bit.
+    ///
+    /// # Errors
+    /// As [`PrefilteredTexture::new`].
+    pub fn by_rows(image: TexelGrid<'_>, rows: TextureRows<'_>) -> Result<Self, InputError> {
         let source = checked(image)?;
         let mean = source.mean();
         let finest = 0.5 / image.width.max(image.height) as f64;
@@ -68,7 +77,7 @@ impl PrefilteredTexture {
         while sigma > finest {
             let mut level = empty_level(sigma, image);
             let coarser = levels.last();
-            fill(&mut level, &source.reduced(sigma), |uv| coarser.map_or(mean, |l| l.fetch(uv)));
+            fill(&mut level, &source.reduced(sigma), |uv| coarser.map_or(mean, |l| l.fetch(uv)), rows);
             levels.push(level);
             sigma *= 0.5;
         }
@@ -91,6 +100,20 @@ impl PrefilteredTexture {
         // Towards the texture itself, whose σ is 0, linear in σ.
         let t = if finer.sigma > 0.0 { (sigma / finer.sigma).log2() } else { sigma / level.sigma };
         mix(finer.fetch(uv), level.fetch(uv), t as f32)
+    }
+
+    /// The levels by growing σ, for whoever fetches elsewhere what [`PrefilteredTexture::fetch`] does here. There are at least
+    /// two, and but for the first each σ is twice that before it.
+    pub fn levels(&self) -> impl ExactSizeIterator<Item = TextureLevel<'_>> {
+        self.levels.iter().map(Level::view)
+    }
+
+    /// The largest value of each channel; no fetch is above it.
+    pub fn brightest(&self) -> [f32; 3] {
+        // Every level is made of means of the first, or of a wider level's.
+        self.levels.iter().flat_map(|level| &level.texels).fold([0.0_f32; 3], |most, texel| {
+            core::array::from_fn(|channel| most[channel].max(texel[channel]))
+        })
     }
 
     /// Number of levels, the texture itself included.

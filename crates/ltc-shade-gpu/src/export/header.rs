@@ -16,6 +16,10 @@ pub fn lines(request: &ShaderRequest, language: Language, code: &str) -> Vec<Str
         lines.push(String::new());
         lines.extend(tables(request));
     }
+    if request.has(Feature::Textured) {
+        lines.push(String::new());
+        lines.extend(textures());
+    }
     lines.push(String::new());
     if language == Language::Spirv {
         lines.extend(kernels(request));
@@ -102,6 +106,18 @@ fn tables(request: &ShaderRequest) -> Vec<String> {
     lines
 }
 
+fn textures() -> Vec<String> {
+    [
+        "Textures (`ltc_shade_gpu::TextureAtlas`): all of them, filtered, in one 2D texture of RGBA32F, fetched without a sampler.",
+        "Row k is the head of texture k: texel 0 has the number of levels and the second level's sigma; texels 1 + 2l and 2 + 2l",
+        "have of level l (x and y of its first texel, texels in a row - 1, rows - 1) and (u and v of its first texel, texels a unit",
+        "of u, of v). (u, v) lies at origin + u axis_u + v axis_v, given as lights are; a light that the texture fills has its origin",
+        "at the first corner, axis_u towards the second, axis_v towards the last. From behind it is mirrored.",
+    ]
+    .map(str::to_owned)
+    .to_vec()
+}
+
 /// The functions that a caller calls, in the order of use.
 fn functions(request: &ShaderRequest) -> Vec<&'static str> {
     let mut names = Vec::new();
@@ -111,7 +127,7 @@ fn functions(request: &ShaderRequest) -> Vec<&'static str> {
         (Feature::Isotropic, &["ltc_lookup_isotropic"]),
         (Feature::Anisotropic, &["ltc_lookup_anisotropic"]),
         (Feature::Fresnel, &["ltc_reflectance"]),
-        (Feature::Textured, &["ltc_texture_fetch", "ltc_texture_level", "ltc_texture_place"]),
+        (Feature::Textured, &["ltc_texture_fetch", "ltc_texture_colour", "ltc_texture_gaussian"]),
     ] {
         if request.has(feature) {
             names.extend(functions);
@@ -168,15 +184,26 @@ fn usage(request: &ShaderRequest, language: Language) -> Vec<String> {
     } else {
         lines.push("  lobe = ltc_lobe(M), and ltc_cosine() for diffuse light".to_owned());
     }
+    if request.has(Feature::Textured) {
+        lines.extend(
+            [
+                "The fraction of a textured quad or polygon is multiplied with its colour, for each lobe:",
+                "  ltc_texture_colour(textures, number, ltc_texture_fetch(lobe, origin, axis_u, axis_v))",
+                "ltc_texture_gaussian, with the same parameters, takes half the fetches and is farther off.",
+            ]
+            .map(str::to_owned),
+        );
+    }
     lines.extend(
         match language {
             Language::Wgsl => &["Paste it behind your bindings; textures and samplers are parameters."][..],
             Language::Glsl => &[
-                "Paste it behind `#version 450`. Textures are parameters: pass your sampler2DArray or sampler3D.",
+                "Paste it behind `#version 450`. Textures are parameters: pass your sampler2DArray, sampler3D or",
+                "sampler2D.",
             ],
             Language::GlslEs => &[
-                "Paste it behind `#version 300 es`. Textures are parameters: pass your sampler2DArray or sampler3D,",
-                "with NEAREST filters unless hardware-filtering was asked for.",
+                "Paste it behind `#version 300 es`. Textures are parameters: pass your sampler2DArray, sampler3D or",
+                "sampler2D, with NEAREST filters unless hardware-filtering was asked for.",
             ],
             Language::Hlsl => &[
                 "Include it; textures are parameters. A mat3x3 of WGSL is a float3x3 whose rows are WGSL's columns, so",
@@ -216,6 +243,22 @@ fn kernels(request: &ShaderRequest) -> Vec<String> {
             };
             lines.push(format!("  ltc_{}_batch: {holds}", light.name().replace('-', "_")));
         }
+        let textured = [
+            (LightKind::Quad, "as ltc_quad_batch, a.w number of the texture, as a float; it fills the quad"),
+            (
+                LightKind::Polygon,
+                "as ltc_polygon_batch, b origin, c axis_u, d axis_v, b.w number of the texture",
+            ),
+        ];
+        let asked = |light: &LightKind| request.has(Feature::Textured) && request.lights.contains(light);
+        let textured: Vec<_> = textured.into_iter().filter(|(light, _)| asked(light)).collect();
+        if !textured.is_empty() {
+            lines.push(
+                "Textured lights: binding 4 textures; 5 storage, a vec4 for each job, written in place of 3."
+                    .to_owned(),
+            );
+        }
+        lines.extend(textured.iter().map(|(light, holds)| format!("  ltc_textured_{light}_batch: {holds}")));
     }
     let kinds = [(Feature::Isotropic, 3, "2D array"), (Feature::Anisotropic, 5, "3D")];
     if kinds.iter().any(|kind| request.has(kind.0)) {

@@ -42,6 +42,12 @@ fn ltc_polygon_of(lobe: LtcLobe, first: u32, count: u32TWO_SIDED) -> f32 {
 }
 ";
 
+/// For textured quads and polygons; see `textured.wgsl` for what is in `textures`.
+const TEXTURES: &str = "
+@group(0) @binding(4) var textures: texture_2d<f32>;
+@group(0) @binding(5) var<storage, read_write> colours: array<vec4f>;
+";
+
 const QUERIES: &str = "
 struct LtcQuery {
     wo: vec3f,
@@ -101,6 +107,37 @@ fn lights(request: &ShaderRequest, text: &mut String) {
             &format!(
                 "    let job = jobs[id.x];\n    let lobe = ltc_lobe(mat3x3f(job.m0, job.m1, job.m2));\n    \
                  results[id.x] = {call}{flag});\n"
+            ),
+        );
+    }
+    if request.has(Feature::Textured) {
+        textured(request, text);
+    }
+}
+
+/// The kernels of those lights that have textures.
+fn textured(request: &ShaderRequest, text: &mut String) {
+    let all = [
+        (LightKind::Quad, "job.a.w", "job.a.xyz, job.b.xyz - job.a.xyz, job.d.xyz - job.a.xyz"),
+        (LightKind::Polygon, "job.b.w", "job.b.xyz, job.c.xyz, job.d.xyz"),
+    ];
+    let asked: Vec<_> = all.into_iter().filter(|(light, ..)| request.lights.contains(light)).collect();
+    if asked.is_empty() {
+        return;
+    }
+    text.push_str(TEXTURES);
+    let flag = if request.has(Feature::TwoSided) { ", (job.bits & LIGHT_TWO_SIDED) != 0u" } else { "" };
+    for (light, number, frame) in asked {
+        let (call, _) = call(light);
+        kernel(
+            text,
+            &format!("textured_{light}"),
+            "job_count",
+            &format!(
+                "    let job = jobs[id.x];\n    let lobe = ltc_lobe(mat3x3f(job.m0, job.m1, job.m2));\n    \
+                 let fetch = ltc_texture_fetch(lobe, {frame});\n    \
+                 let colour = ltc_texture_colour(textures, u32({number}), fetch);\n    \
+                 colours[id.x] = vec4f({call}{flag}) * colour, 0.0);\n"
             ),
         );
     }

@@ -60,7 +60,8 @@ fn glsl_text(module: &Module, info: &ModuleInfo, version: glsl::Version) -> Resu
     let kept = library.lines().filter(|line| !line.starts_with("#version"));
     let mut text: String = kept.flat_map(|line| [line, "\n"]).collect();
     if version.is_es() {
-        let samplers = ["sampler2DArray", "sampler3D"].into_iter().filter(|s| text.contains(s));
+        let used = |sampler: &&str| text.contains(&format!("{sampler} "));
+        let samplers = ["sampler2D", "sampler2DArray", "sampler3D"].into_iter().filter(used);
         let precisions: String = samplers.map(|s| format!("precision highp {s};\n")).collect();
         text = text.replacen("precision highp int;\n", &format!("precision highp int;\n{precisions}"), 1);
     }

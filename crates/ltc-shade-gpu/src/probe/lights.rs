@@ -10,7 +10,7 @@ use crate::{Gpu, GpuError, LightJob, LightKind, LightShape, Lights};
 const ALLOWED: f64 = 2e-4;
 
 /// Lambert's, a tilted, and a narrow and thin one; row-major.
-const LOBES: [[f32; 9]; 3] = [
+pub(super) const LOBES: [[f32; 9]; 3] = [
     [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
     [0.6, 0.0, -0.7, 0.0, 0.5, 0.0, 0.3, 0.0, 0.8],
     [0.2, 0.02, -0.3, 0.01, 0.08, 0.1, 0.05, 0.0, 0.9],

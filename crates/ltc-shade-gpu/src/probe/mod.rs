@@ -3,6 +3,7 @@
 mod arithmetic;
 mod derivatives;
 mod lights;
+mod textured;
 mod textures;
 
 use std::fmt;
@@ -97,6 +98,7 @@ impl fmt::Display for ProbeReport {
 struct Sources {
     arithmetic: String,
     integrate: String,
+    textured: String,
     derivatives: String,
 }
 
@@ -106,13 +108,14 @@ impl Sources {
         Self {
             arithmetic,
             integrate: Program::Integrate.source(),
+            textured: Program::IntegrateTextured.source(),
             derivatives: include_str!("derivatives.wgsl").to_owned(),
         }
     }
 }
 
 /// Evaluates small known cases on the device: arithmetic, NaN, filtering of float textures and its precision, derivatives, and
-/// a light of every kind against `f64`. Takes a second or so, most of it for compiling.
+/// a light of every kind, and one with a texture, against `f64`. Takes a second or so, most of it for compiling.
 ///
 /// ```no_run
 /// let gpu = ltc_shade_gpu::Gpu::new(ltc_shade_gpu::GpuOptions::default())?;
@@ -133,6 +136,7 @@ fn examine(gpu: &Gpu, sources: &Sources) -> Result<ProbeReport, GpuError> {
     findings.extend(textures::findings(gpu, &sources.arithmetic)?);
     findings.push(derivatives::finding(gpu, &sources.derivatives)?);
     findings.extend(lights::findings(gpu, &sources.integrate)?);
+    findings.push(textured::finding(gpu, &sources.textured)?);
     Ok(ProbeReport { device: gpu.info().clone(), findings })
 }
 
@@ -188,6 +192,8 @@ mod tests {
         assert!(filtering.len() == 1 || off(&filtering) == ["filtering precision"], "{filtering:?}");
         let planted = plant(&own.derivatives, "dpdy(5.0", "dpdy(5.1");
         assert_eq!(derivatives::finding(&gpu, &planted).unwrap().verdict, Verdict::Off);
+        let planted = plant(&own.textured, "LTC_WIDE_SIGMA: f32 = 2.2360680", "LTC_WIDE_SIGMA: f32 = 2.3");
+        assert_eq!(textured::finding(&gpu, &planted).unwrap().verdict, Verdict::Off);
         let planted = plant(&own.integrate, "LTC_PI: f32 = 3.1415927", "LTC_PI: f32 = 3.15");
         let lights = examine(&gpu, &Sources { integrate: planted, ..own }).unwrap();
         assert!(off(&lights.findings).contains(&"light quad") && !lights.is_good(), "{lights}");

@@ -44,7 +44,13 @@ fn shade(point: SurfacePoint, light_count: u32) -> vec3f {
         var lobe = specular_lobe;
         var reflectance = specular;
         for (var part = 0; part < 2; part++) {
-            sum += light.radiance * reflectance * light_fraction(lobe, light, frame, point.position);
+            var seen = vec3f(light_fraction(lobe, light, frame, point.position));
+//#if light_textures
+            if seen.x > 0.0 {
+                seen *= light_colour(lobe, light, frame, point.position);
+            }
+//#endif
+            sum += light.radiance * reflectance * seen;
             if !has_diffuse {
                 break;
             }

@@ -18,16 +18,16 @@ pub fn request() -> ShaderRequest {
     ShaderRequest::new(LightKind::ALL, [Feature::SurfaceHorizon, Feature::CosineHorizon, Feature::TwoSided])
 }
 
-fn words(triples: &[Triple]) -> Vec<u32> {
+pub fn words(triples: &[Triple]) -> Vec<u32> {
     triples.iter().flat_map(Triple::words).collect()
 }
 
 /// Compiles a host of `examples/hosts` as its head says, beside `library`.
-fn compiled(host: &str, library: (&str, &[u8]), args: &[&str], folder: &Path) -> Vec<u32> {
+pub fn compiled(host: &str, library: (&str, &[u8]), args: &[&str], folder: &Path) -> Vec<u32> {
     let copy: PathBuf = folder.join(Path::new(host).file_name().unwrap());
     fs::copy(hosts().join(host), &copy).unwrap();
     fs::write(folder.join(library.0), library.1).unwrap();
-    let words = folder.join("batch.spv");
+    let words = copy.with_extension("spv");
     run_program(
         "glslangValidator",
         &[args, &[copy.to_str().unwrap(), "-o", words.to_str().unwrap()]].concat(),
@@ -38,7 +38,13 @@ fn compiled(host: &str, library: (&str, &[u8]), args: &[&str], folder: &Path) ->
 
 fn run_host(vulkan: &Vulkan, spirv: &[u32], triples: &[Triple]) -> Vec<f32> {
     let jobs = words(triples);
-    let bindings = Bindings { group: 0, count: triples.len() as u32, inputs: &[(1, &jobs)], output: 2 };
+    let bindings = Bindings {
+        group: 0,
+        count: triples.len() as u32,
+        inputs: &[(1, &jobs)],
+        output: 2,
+        ..Bindings::default()
+    };
     vulkan.run(spirv, "main", &bindings)
 }
 
@@ -66,7 +72,8 @@ fn a_planted_constant_is_seen() {
     let jobs = words(triples);
     // wgpu numbers bindings without gaps: the one of vertices is filled, although quads have none.
     let inputs = [(1, &jobs[..]), (2, &[0; 4][..])];
-    let bindings = Bindings { group: 0, count: EACH as u32, inputs: &inputs, output: 3 };
+    let bindings =
+        Bindings { group: 0, count: EACH as u32, inputs: &inputs, output: 3, ..Bindings::default() };
     compare(triples, &vulkan.run(&spirv, "ltc_quad_batch", &bindings)).unwrap();
     let full_turn = (2.0 * std::f32::consts::PI).to_bits();
     let planted = spirv.iter_mut().filter(|word| **word == full_turn);
@@ -107,7 +114,13 @@ fn the_kernels_of_spirv_compute_the_same() {
             }
         }
         let inputs = [(1, &jobs[..]), (2, &vertices[..])];
-        let bindings = Bindings { group: 0, count: triples.len() as u32, inputs: &inputs, output: 3 };
+        let bindings = Bindings {
+            group: 0,
+            count: triples.len() as u32,
+            inputs: &inputs,
+            output: 3,
+            ..Bindings::default()
+        };
         let entry_point = format!("ltc_{}_batch", kind.name().replace('-', "_"));
         let largest = compare(triples, &vulkan.run(&spirv, &entry_point, &bindings))
             .unwrap_or_else(|e| panic!("{kind}: {e}"));

@@ -18,6 +18,7 @@ fn goldens() -> Vec<(&'static str, Language, ShaderRequest)> {
         ("quad.wgsl", Language::Wgsl, bare.clone()),
         ("quad.450.glsl", Language::Glsl, quad),
         ("quad.300es.glsl", Language::GlslEs, bare),
+        ("textured.300es.glsl", Language::GlslEs, ShaderRequest::new([], [Feature::Textured])),
         ("line.hlsl", Language::Hlsl, thin.clone()),
         ("line.metal", Language::Msl, thin.clone()),
         ("line.spv", Language::Spirv, thin),

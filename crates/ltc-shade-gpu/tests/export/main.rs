@@ -8,6 +8,7 @@ mod golden;
 #[path = "../../../../examples/hosts/wgsl/main.rs"]
 mod host_wgsl;
 mod support;
+mod textured;
 mod triples;
 mod validators;
 mod vulkan;

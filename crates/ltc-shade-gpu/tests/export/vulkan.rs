@@ -1,5 +1,6 @@
 //! SPIR-V that is not wgpu's own, on a Vulkan device.
 
+use ltc_shade_gpu::TextureAtlas;
 use wgpu::util::{BufferInitDescriptor, DeviceExt as _};
 use wgpu::{BufferUsages, ShaderStages};
 
@@ -10,11 +11,22 @@ pub struct Vulkan {
 }
 
 /// Read-only storage buffers, and the binding of the one that is written.
+#[derive(Default)]
 pub struct Bindings<'a> {
     pub group: u32,
     pub count: u32,
     pub inputs: &'a [(u32, &'a [u32])],
     pub output: u32,
+    /// One float, or the four of a textured light.
+    pub colours: bool,
+    /// The textures of lights, and where they are bound.
+    pub textures: Option<(u32, &'a TextureAtlas)>,
+}
+
+impl Bindings<'_> {
+    fn floats_each(&self) -> usize {
+        if self.colours { 4 } else { 1 }
+    }
 }
 
 impl Vulkan {
@@ -40,7 +52,7 @@ impl Vulkan {
         Some(Self { device, queue })
     }
 
-    /// One invocation for each of `count` items, in groups of 64, each writing a float.
+    /// One invocation for each of `count` items, in groups of 64, each writing a float or four.
     pub fn run(&self, spirv: &[u32], entry_point: &str, bindings: &Bindings<'_>) -> Vec<f32> {
         let module = self.module(spirv, entry_point);
         let (pipeline, group_layout) = self.pipeline(&module, entry_point, bindings);
@@ -50,12 +62,17 @@ impl Vulkan {
         };
         let mut buffers = vec![(0, buffer(&[bindings.count, 0, 0, 0], BufferUsages::UNIFORM))];
         buffers.extend(bindings.inputs.iter().map(|(at, words)| (*at, buffer(words, BufferUsages::STORAGE))));
-        let unwritten = vec![u32::MAX; bindings.count as usize];
+        let unwritten = vec![u32::MAX; bindings.count as usize * bindings.floats_each()];
         buffers.push((bindings.output, buffer(&unwritten, BufferUsages::STORAGE | BufferUsages::COPY_SRC)));
-        let entries: Vec<_> = buffers
+        let mut entries: Vec<_> = buffers
             .iter()
             .map(|(binding, b)| wgpu::BindGroupEntry { binding: *binding, resource: b.as_entire_binding() })
             .collect();
+        let textures = bindings.textures.map(|(at, atlas)| (at, self.texture(atlas)));
+        if let Some((binding, view)) = &textures {
+            let resource = wgpu::BindingResource::TextureView(view);
+            entries.push(wgpu::BindGroupEntry { binding: *binding, resource });
+        }
         let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &group_layout,
@@ -79,6 +96,23 @@ impl Vulkan {
         staging.map_async(wgpu::MapMode::Read, .., |mapped| mapped.unwrap());
         self.device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
         bytemuck::pod_collect_to_vec(&staging.get_mapped_range(..).unwrap())
+    }
+
+    fn texture(&self, atlas: &TextureAtlas) -> wgpu::TextureView {
+        let descriptor = wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: atlas.width(), height: atlas.height(), depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        };
+        let bytes = bytemuck::cast_slice(atlas.texels());
+        let order = wgpu::util::TextureDataOrder::LayerMajor;
+        let texture = self.device.create_texture_with_data(&self.queue, &descriptor, order, bytes);
+        texture.create_view(&Default::default())
     }
 
     #[expect(unsafe_code, reason = "wgpu does not look into SPIR-V; spirv-val has")]
@@ -110,6 +144,14 @@ impl Vulkan {
         let mut entries = vec![entry(0, wgpu::BufferBindingType::Uniform)];
         entries.extend(bindings.inputs.iter().map(|(at, _)| entry(*at, storage(true))));
         entries.push(entry(bindings.output, storage(false)));
+        entries.extend(bindings.textures.map(|(binding, _)| wgpu::BindGroupLayoutEntry {
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            ..entry(binding, storage(true))
+        }));
         let group = self
             .device
             .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });

@@ -18,8 +18,8 @@
 //
 // Use, once for a surface point:
 //   lobe = ltc_lobe(M), and ltc_cosine() for diffuse light
-// Paste it behind `#version 300 es`. Textures are parameters: pass your sampler2DArray or sampler3D,
-// with NEAREST filters unless hardware-filtering was asked for.
+// Paste it behind `#version 300 es`. Textures are parameters: pass your sampler2DArray, sampler3D or
+// sampler2D, with NEAREST filters unless hardware-filtering was asked for.
 
 
 precision highp float;

@@ -32,7 +32,8 @@
 //   lobe = ltc_lobe(found.m), and ltc_cosine() for diffuse light
 // and for each of its lights:
 //   radiance * (F0 * found.magnitude + (F90 - F0) * found.fresnel) * fraction
-// Paste it behind `#version 450`. Textures are parameters: pass your sampler2DArray or sampler3D.
+// Paste it behind `#version 450`. Textures are parameters: pass your sampler2DArray, sampler3D or
+// sampler2D.
 
 // How an axis spaces its nodes; filled from the table, see `AxisUniform` in Rust.
 struct LtcAxis {

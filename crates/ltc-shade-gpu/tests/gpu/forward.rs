@@ -1,10 +1,10 @@
 //! Forward shading against deferred shading of the same points.
 
 use glam::{Mat4, Vec3, Vec4};
-use ltc_core::Sides;
+use ltc_core::{PrefilteredTexture, Sides, TexelGrid};
 use ltc_shade_gpu::{
-    AreaLight, Filtering, Forward, ForwardMaterial, ForwardVertex, ForwardView, LightShape, Shader,
-    SurfacePoint, TableTextures, Tables,
+    AreaLight, Filtering, Forward, ForwardMaterial, ForwardVertex, ForwardView, Gpu, LightShape,
+    LightTexture, LightTextures, Shader, SurfacePoint, TableTextures, Tables,
 };
 use ltc_table::Mapping;
 
@@ -36,7 +36,7 @@ fn lights() -> Vec<AreaLight> {
             sides: Sides::Two,
         },
     ]
-    .map(|shape| AreaLight { shape, radiance: Vec3::new(5.0, 4.0, 3.0) })
+    .map(|shape| AreaLight::new(shape, Vec3::new(5.0, 4.0, 3.0)))
     .to_vec()
 }
 
@@ -60,8 +60,35 @@ fn looking(eye: Vec3, at: Vec3, aspect: f32) -> Mat4 {
 #[test]
 fn forward_is_deferred() {
     let Some(gpu) = gpu(Filtering::Exact) else { return };
+    compare(&gpu, &Forward::new(&gpu).unwrap(), &Shader::new(&gpu).unwrap(), &lights());
+}
+
+/// A quad that its texture fills, one that it does not, a polygon, and lights without textures among them.
+#[test]
+fn forward_is_deferred_with_textures() {
+    let Some(gpu) = gpu(Filtering::Exact) else { return };
+    let colours: Vec<[f32; 3]> = (0..64).map(|k| [(k % 8) as f32 / 8.0, (k / 8 % 2) as f32, 0.5]).collect();
+    let picture = |width, height| {
+        PrefilteredTexture::new(TexelGrid { width, height, colours: &colours, coverage: None }).unwrap()
+    };
+    let textures = LightTextures::upload(&gpu, &[picture(8, 8), picture(4, 16)]).unwrap();
+    let mut lights = lights();
+    let LightShape::Quad { corners, .. } = lights[0].shape else { panic!("{:?}", lights[0]) };
+    lights[0].texture = Some(LightTexture::filling(1, &corners));
+    let mut slid = LightTexture::filling(0, &corners);
+    slid.frame.origin += slid.frame.axis_u * 0.2 - Vec3::Y;
+    lights[3].texture = Some(slid);
+    lights.push(AreaLight { texture: Some(LightTexture { number: 1, ..slid }), ..lights[0].clone() });
+    let (forward, deferred) = (
+        Forward::with_textures(&gpu, textures.clone()).unwrap(),
+        Shader::with_textures(&gpu, textures).unwrap(),
+    );
+    compare(&gpu, &forward, &deferred, &lights);
+}
+
+fn compare(gpu: &Gpu, forward: &Forward, shader: &Shader, lights: &[AreaLight]) {
     let table = tables::anisotropic(Mapping::Linear, Mapping::Linear);
-    let texture = TableTextures::upload(&gpu, &table).unwrap();
+    let texture = TableTextures::upload(gpu, &table).unwrap();
     let tables = Tables { isotropic: None, anisotropic: Some(&texture) };
     let eye = Vec3::new(0.5, 2.0, 5.0);
     let clip_from_world = looking(eye, Vec3::ZERO, 1.5);
@@ -74,8 +101,7 @@ fn forward_is_deferred() {
         f90: 1.0,
         albedo: Vec3::new(0.1, 0.2, 0.3),
     };
-    let drawn =
-        Forward::new(&gpu).unwrap().draw(&gpu, tables, &view, &material, &floor(), &lights()).unwrap();
+    let drawn = forward.draw(gpu, tables, &view, &material, &floor(), lights).unwrap();
     assert_eq!(drawn.len(), 48 * 32);
 
     // The floor's points under the middles of the pixels.
@@ -105,7 +131,7 @@ fn forward_is_deferred() {
         shown.push(*pixel);
     }
     assert!(points.len() > 500 && points.len() < 48 * 32, "{} of the pixels show the floor", points.len());
-    let deferred = Shader::new(&gpu).unwrap().shade(&gpu, tables, &points, &lights()).unwrap();
+    let deferred = shader.shade(gpu, tables, &points, lights).unwrap();
     let difference = |a: &[[f32; 3]]| {
         let each = shown.iter().zip(a).flat_map(|(p, d)| (0..3).map(move |c| (p[c] - d[c]).abs()));
         each.fold(0.0_f32, f32::max)

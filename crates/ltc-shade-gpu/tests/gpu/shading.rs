@@ -135,7 +135,7 @@ fn points(count: usize, rng: &mut impl FnMut() -> f64) -> Vec<SurfacePoint> {
 
 /// Lights of all shapes in turn.
 fn lights(count: usize, rng: &mut impl FnMut() -> f64) -> Vec<AreaLight> {
-    (0..count).map(|i| AreaLight { shape: shape(i, rng), radiance: unit_color(rng) }).collect()
+    (0..count).map(|i| AreaLight::new(shape(i, rng), unit_color(rng))).collect()
 }
 
 fn shape(i: usize, rng: &mut impl FnMut() -> f64) -> LightShape {
@@ -265,6 +265,7 @@ fn lights_below_the_horizon_add_exactly_nothing() {
         point.wo.y = point.wo.y.abs();
     }
     let below = |y: f32| AreaLight {
+        texture: None,
         shape: LightShape::Quad {
             corners: [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, z]| Vec3::new(x, y, z)),
             sides: Sides::Two,
@@ -320,8 +321,8 @@ fn invalid_points_and_lights_are_refused_by_index() {
         assert!(matches!(error, GpuError::Input { item: "point", index: 1, .. }), "{error}");
     }
     for bad in [
-        AreaLight { shape: LightShape::Sphere { center: Vec3::NAN, radius: 1.0 }, radiance: light.radiance },
-        AreaLight { shape: LightShape::Sphere { center: Vec3::ONE, radius: -1.0 }, radiance: light.radiance },
+        AreaLight::new(LightShape::Sphere { center: Vec3::NAN, radius: 1.0 }, light.radiance),
+        AreaLight::new(LightShape::Sphere { center: Vec3::ONE, radius: -1.0 }, light.radiance),
         AreaLight { radiance: Vec3::new(-1.0, 0.0, 0.0), ..light.clone() },
     ] {
         let error = shader.shade(&gpu, tables, &[point], &[light.clone(), light.clone(), bad]).unwrap_err();
