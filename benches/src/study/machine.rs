@@ -19,6 +19,9 @@ pub struct Machine {
     /// The graphics device that frames were shaded on, where there was one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gpu: Option<String>,
+    /// What told the times of records that begin with `gpu/`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gpu_clock: Option<String>,
 }
 
 impl Machine {
@@ -31,6 +34,7 @@ impl Machine {
             build: build(),
             load: load(),
             gpu: None,
+            gpu_clock: None,
         }
     }
 }

@@ -8,6 +8,8 @@
 //! The WGSL comes in [`modules`]: pure functions that know no bindings, and thin entry points that hold them. A program is
 //! their concatenation; [`ShaderRequest`] gives the functions alone, just those asked for.
 //!
+//! [`timing`] says how long programs over a grid of pixels take.
+//!
 //! [`ShaderRequest::export`] writes them in other languages. [`probe`] tests a device by feature.
 //!
 //! Feature `device` (on) brings the devices, through wgpu; `export` (on) the other languages, through naga alone.
@@ -67,6 +69,8 @@ mod shade;
 mod surface;
 #[cfg(feature = "device")]
 mod table_textures;
+#[cfg(feature = "device")]
+pub mod timing;
 
 #[cfg(feature = "device")]
 pub use device::{Gpu, GpuInfo, GpuOptions, Texels};
