@@ -39,6 +39,16 @@ impl Machine {
     }
 }
 
+impl Machine {
+    /// A name for files: processor and graphics device in lower case, without versions of drivers.
+    pub fn slug(&self) -> String {
+        let gpu = self.gpu.as_deref().map_or("no-gpu", |gpu| gpu.split(" (").next().unwrap_or(gpu));
+        let name = format!("{} {gpu}", self.cpu.split('@').next().unwrap_or(&self.cpu)).to_lowercase();
+        let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+        words.collect::<Vec<_>>().join("-")
+    }
+}
+
 fn processor() -> Option<String> {
     let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = text.lines().find(|line| line.starts_with("model name"))?;
@@ -61,5 +71,20 @@ fn build() -> String {
         format!("{mode}, baseline instructions; batches choose theirs at run time")
     } else {
         format!("{mode}, {}", named.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slug_is_a_plain_file_name() {
+        let machine = |cpu: &str, gpu: Option<&str>| {
+            Machine { cpu: cpu.into(), gpu: gpu.map(str::to_owned), ..Machine::default() }.slug()
+        };
+        let found = machine("Intel(R) Xeon(R) @ 2.10GHz", Some("llvmpipe (LLVM 15) (software, vulkan, x)"));
+        assert_eq!(found, "intel-r-xeon-r-llvmpipe");
+        assert_eq!(machine("../x y", None), "x-y-no-gpu");
     }
 }

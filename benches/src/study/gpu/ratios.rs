@@ -1,6 +1,7 @@
 //! What is asked of one form beside another, turn by turn: what slows the device down falls on both.
 
 use super::super::{Interval, Record};
+use super::LEAST;
 use super::bench::{Bench, Measure};
 
 /// A ratio's name, what is above and what is below, and what it may be.
@@ -212,7 +213,7 @@ impl Line {
         }
         let (slope, intercept) = ((s * sxy - sx * sy) / determinant, (sxx * sy - sx * sxy) / determinant);
         let worst = points.iter().map(|(x, y)| ((intercept + slope * x) / y - 1.0).abs()).fold(0.0, f64::max);
-        Some(Self { slope, intercept, worst })
+        Some(Self { slope: slope.max(LEAST), intercept: intercept.max(LEAST), worst })
     }
 }
 

@@ -62,48 +62,18 @@ fn ltc_quad(
     if !ltc_emits_towards(facing, two_sided) {
         return 0.0;
     }
-    var sum = 0.0;
-//#if surface_horizon
-    if lowest < 0.0 {
-        var boundary = ltc_boundary();
-        // The corners move through four registers, so that none is indexed and the edge's code stands here once.
-        for (var i = 0; i < 4; i++) {
-            ltc_boundary_push(&boundary, lobe, a);
-            let moved = a;
-            a = b;
-            b = c;
-            c = d;
-            d = moved;
-        }
-        sum = ltc_boundary_finish(&boundary, lobe);
-    } else {
-        sum = ltc_quad_above(lobe, a, b, c, d);
-    }
-//#else
-    sum = ltc_quad_above(lobe, a, b, c, d);
-//#endif
-    return clamp(ltc_fraction_of_sum(select(sum, -sum, facing > 0.0)), 0.0, 1.0);
-}
-
-// The boundary sum of a quad that the surface's horizon does not cut.
-fn ltc_quad_above(lobe: LtcLobe, v0: vec3f, v1: vec3f, v2: vec3f, v3: vec3f) -> f32 {
-    var a = v0;
-    var b = v1;
-    var c = v2;
-    var d = v3;
-    var sum = 0.0;
-    var begin = ltc_cosine_from_target(lobe, a);
+    var boundary = ltc_boundary();
+    // The corners move through four registers, so that none is indexed and the edge's code stands here once.
     for (var i = 0; i < 4; i++) {
-        let to = ltc_cosine_from_target(lobe, b);
-        sum += ltc_arc(begin, to, ltc_cosine_normal(lobe, ltc_cross(a, b)), lobe.area_scale);
-        begin = to;
+        ltc_boundary_push(&boundary, lobe, a);
         let moved = a;
         a = b;
         b = c;
         c = d;
         d = moved;
     }
-    return sum;
+    let sum = ltc_boundary_finish(&boundary, lobe);
+    return clamp(ltc_fraction_of_sum(select(sum, -sum, facing > 0.0)), 0.0, 1.0);
 }
 
 struct LtcPlain {

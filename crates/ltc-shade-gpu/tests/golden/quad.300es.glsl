@@ -370,60 +370,6 @@ LtcPlain ltc_quad_plain(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     return LtcPlain(sum, true);
 }
 
-// The boundary sum of a quad that the surface's horizon does not cut.
-float ltc_quad_above(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
-    vec3 a = vec3(0.0);
-    vec3 b = vec3(0.0);
-    vec3 c = vec3(0.0);
-    vec3 d = vec3(0.0);
-    float sum = 0.0;
-    vec3 begin = vec3(0.0);
-    int i = 0;
-    a = v0;
-    b = v1;
-    c = v2;
-    d = v3;
-    vec3 _e11 = a;
-    vec3 _e12 = ltc_cosine_from_target(lobe, _e11);
-    begin = _e12;
-    bool loop_init = true;
-    while(true) {
-        if (!loop_init) {
-            int _e35 = i;
-            i = (_e35 + 1);
-        }
-        loop_init = false;
-        int _e16 = i;
-        if ((_e16 < 4)) {
-        } else {
-            break;
-        }
-        {
-            vec3 _e19 = b;
-            vec3 _e20 = ltc_cosine_from_target(lobe, _e19);
-            float _e21 = sum;
-            vec3 _e22 = begin;
-            vec3 _e23 = a;
-            vec3 _e24 = b;
-            vec3 _e25 = ltc_cross(_e23, _e24);
-            vec3 _e26 = ltc_cosine_normal(lobe, _e25);
-            float _e28 = ltc_arc(_e22, _e20, _e26, lobe.area_scale);
-            sum = (_e21 + _e28);
-            begin = _e20;
-            vec3 moved = a;
-            vec3 _e31 = b;
-            a = _e31;
-            vec3 _e32 = c;
-            b = _e32;
-            vec3 _e33 = d;
-            c = _e33;
-            d = moved;
-        }
-    }
-    float _e37 = sum;
-    return _e37;
-}
-
 // The fraction of the lobe that sees the quad, in [0, 1]; corners counter-clockwise seen from the emitting side, relative to
 // the shading point in the shading frame. Zero for a degenerate quad, for a shading point in its plane, and behind a
 // one-sided one.
@@ -436,7 +382,8 @@ float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     bool local_3 = false;
     bool local_4 = false;
     bool local_5 = false;
-    float sum = 0.0;
+    LtcBoundary boundary = LtcBoundary(LtcCorner(vec3(0.0), vec3(0.0)), LtcCorner(vec3(0.0), vec3(0.0)), false, 0.0);
+    int i = 0;
     float _e6 = ltc_largest_component(v0);
     float _e7 = ltc_largest_component(v1);
     float _e9 = ltc_largest_component(v2);
@@ -505,15 +452,35 @@ float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     if (!(_e94)) {
         return 0.0;
     }
-    vec3 _e99 = a;
-    vec3 _e100 = b;
-    vec3 _e101 = c;
-    vec3 _e102 = d;
-    float _e103 = ltc_quad_above(lobe, _e99, _e100, _e101, _e102);
-    sum = _e103;
-    float _e104 = sum;
-    float _e105 = sum;
-    float _e110 = ltc_fraction_of_sum(((_e93 > 0.0) ? -(_e105) : _e104));
-    return clamp(_e110, 0.0, 1.0);
+    LtcBoundary _e97 = ltc_boundary();
+    boundary = _e97;
+    bool loop_init = true;
+    while(true) {
+        if (!loop_init) {
+            int _e110 = i;
+            i = (_e110 + 1);
+        }
+        loop_init = false;
+        int _e101 = i;
+        if ((_e101 < 4)) {
+        } else {
+            break;
+        }
+        {
+            vec3 _e104 = a;
+            ltc_boundary_push(boundary, lobe, _e104);
+            vec3 moved = a;
+            vec3 _e106 = b;
+            a = _e106;
+            vec3 _e107 = c;
+            b = _e107;
+            vec3 _e108 = d;
+            c = _e108;
+            d = moved;
+        }
+    }
+    float _e112 = ltc_boundary_finish(boundary, lobe);
+    float _e117 = ltc_fraction_of_sum(((_e93 > 0.0) ? -(_e112) : _e112));
+    return clamp(_e117, 0.0, 1.0);
 }
 

@@ -792,60 +792,6 @@ LtcPlain ltc_quad_plain(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     return LtcPlain(sum, true);
 }
 
-// The boundary sum of a quad that the surface's horizon does not cut.
-float ltc_quad_above(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
-    vec3 a = vec3(0.0);
-    vec3 b = vec3(0.0);
-    vec3 c = vec3(0.0);
-    vec3 d = vec3(0.0);
-    float sum = 0.0;
-    vec3 begin = vec3(0.0);
-    int i = 0;
-    a = v0;
-    b = v1;
-    c = v2;
-    d = v3;
-    vec3 _e11 = a;
-    vec3 _e12 = ltc_cosine_from_target(lobe, _e11);
-    begin = _e12;
-    bool loop_init_1 = true;
-    while(true) {
-        if (!loop_init_1) {
-            int _e35 = i;
-            i = (_e35 + 1);
-        }
-        loop_init_1 = false;
-        int _e16 = i;
-        if ((_e16 < 4)) {
-        } else {
-            break;
-        }
-        {
-            vec3 _e19 = b;
-            vec3 _e20 = ltc_cosine_from_target(lobe, _e19);
-            float _e21 = sum;
-            vec3 _e22 = begin;
-            vec3 _e23 = a;
-            vec3 _e24 = b;
-            vec3 _e25 = ltc_cross(_e23, _e24);
-            vec3 _e26 = ltc_cosine_normal(lobe, _e25);
-            float _e28 = ltc_arc(_e22, _e20, _e26, lobe.area_scale);
-            sum = (_e21 + _e28);
-            begin = _e20;
-            vec3 moved = a;
-            vec3 _e31 = b;
-            a = _e31;
-            vec3 _e32 = c;
-            b = _e32;
-            vec3 _e33 = d;
-            c = _e33;
-            d = moved;
-        }
-    }
-    float _e37 = sum;
-    return _e37;
-}
-
 // The fraction of the lobe that sees the quad, in [0, 1]; corners counter-clockwise seen from the emitting side, relative to
 // the shading point in the shading frame. Zero for a degenerate quad, for a shading point in its plane, and behind a
 // one-sided one.
@@ -859,7 +805,6 @@ float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     bool local_9 = false;
     bool local_10 = false;
     bool local_11 = false;
-    float sum = 0.0;
     LtcBoundary boundary = LtcBoundary(LtcCorner(vec3(0.0), vec3(0.0)), LtcCorner(vec3(0.0), vec3(0.0)), false, LtcCorner(vec3(0.0), vec3(0.0)), LtcCorner(vec3(0.0), vec3(0.0)), false, false, 0.0);
     int i = 0;
     float _e6 = ltc_largest_component(v0);
@@ -939,47 +884,35 @@ float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     if (!(_e116)) {
         return 0.0;
     }
-    if ((lowest < 0.0)) {
-        LtcBoundary _e123 = ltc_boundary();
-        boundary = _e123;
-        bool loop_init_2 = true;
-        while(true) {
-            if (!loop_init_2) {
-                int _e136 = i;
-                i = (_e136 + 1);
-            }
-            loop_init_2 = false;
-            int _e127 = i;
-            if ((_e127 < 4)) {
-            } else {
-                break;
-            }
-            {
-                vec3 _e130 = a;
-                ltc_boundary_push(boundary, lobe, _e130);
-                vec3 moved = a;
-                vec3 _e132 = b;
-                a = _e132;
-                vec3 _e133 = c;
-                b = _e133;
-                vec3 _e134 = d;
-                c = _e134;
-                d = moved;
-            }
+    LtcBoundary _e119 = ltc_boundary();
+    boundary = _e119;
+    bool loop_init_1 = true;
+    while(true) {
+        if (!loop_init_1) {
+            int _e132 = i;
+            i = (_e132 + 1);
         }
-        float _e138 = ltc_boundary_finish(boundary, lobe);
-        sum = _e138;
-    } else {
-        vec3 _e139 = a;
-        vec3 _e140 = b;
-        vec3 _e141 = c;
-        vec3 _e142 = d;
-        float _e143 = ltc_quad_above(lobe, _e139, _e140, _e141, _e142);
-        sum = _e143;
+        loop_init_1 = false;
+        int _e123 = i;
+        if ((_e123 < 4)) {
+        } else {
+            break;
+        }
+        {
+            vec3 _e126 = a;
+            ltc_boundary_push(boundary, lobe, _e126);
+            vec3 moved = a;
+            vec3 _e128 = b;
+            a = _e128;
+            vec3 _e129 = c;
+            b = _e129;
+            vec3 _e130 = d;
+            c = _e130;
+            d = moved;
+        }
     }
-    float _e144 = sum;
-    float _e145 = sum;
-    float _e150 = ltc_fraction_of_sum(((_e115 > 0.0) ? -(_e145) : _e144));
-    return clamp(_e150, 0.0, 1.0);
+    float _e134 = ltc_boundary_finish(boundary, lobe);
+    float _e139 = ltc_fraction_of_sum(((_e115 > 0.0) ? -(_e134) : _e134));
+    return clamp(_e139, 0.0, 1.0);
 }
 
