@@ -80,7 +80,8 @@ fn errors(run: &Run, picture: &str) -> Plot {
 }
 
 fn lights(run: &Run, picture: &str) -> Plot {
-    let mut kinds: Vec<&str> = of(run, picture, "shade").map(|r| r.word(4)).collect();
+    let counted = |r: &&Record| r.word(5).ends_with("_lights");
+    let mut kinds: Vec<&str> = of(run, picture, "shade").filter(counted).map(|r| r.word(4)).collect();
     kinds.dedup();
     let series = kinds.into_iter().map(|kind| {
         let mark = |r: &Record| {
@@ -132,6 +133,8 @@ mod tests {
         let records = vec![
             lookup.error("max", 1e-6),
             Record::new("gpu/1080p/compute/shade/isotropic/16_lights", "frame").timed(time(5e6)),
+            Record::new("gpu/1080p/compute/shade/published_2016/01_lights", "frame").timed(time(2e6)),
+            Record::new("gpu/1080p/compute/shade/isotropic/each_light", "light of a frame").timed(time(3e5)),
             ratio("line_over_quad", 0.3, Some(0.5)),
             ratio("quad_over_published", 2.0, Some(1.0)),
             ratio("anisotropic_over_isotropic_lookup", 1.5, Some(1.5)),
@@ -148,6 +151,7 @@ mod tests {
             assert_eq!(body.matches(words).count(), 1, "{words}");
         }
         assert!(body.contains("isotropic, texture f32") && !body.contains("NaN"));
+        assert_eq!(body.matches(">isotropic</text>").count(), 1, "each kind is in the legend once");
     }
 
     #[test]
