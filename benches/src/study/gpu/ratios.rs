@@ -17,8 +17,8 @@ const RATIOS: &[Asked] = &[
     ),
     ("line_over_quad", "compute/integral/line/exact", "compute/integral/quad/exact", Some(0.5)),
     ("quad_over_published", "compute/integral/quad/exact", "compute/integral/quad/published_2016", Some(1.0)),
-    // What explains them. A software driver takes both sides of every branch: the plain way alone is what is left on hardware
-    // where neighbours go the same way.
+    // What explains them. A software driver does not jump over branches that no pixel takes: the plain way alone is what is left
+    // on hardware where neighbours go the same way.
     (
         "plain_quad_over_published",
         "compute/integral/quad/plain_alone",

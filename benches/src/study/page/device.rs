@@ -40,7 +40,7 @@ pub fn sections(body: &mut String, run: &Run) {
 fn software_words(run: &Run) -> &'static str {
     let software = run.machine.gpu.as_deref().is_some_and(|gpu| gpu.contains("(software"));
     if software {
-        " <b>This is a software driver</b>: it takes both sides of every branch, and its times say little about hardware."
+        " <b>This is a software driver</b>: it does not jump over branches that no pixel takes, and its times say little about hardware."
     } else {
         ""
     }
