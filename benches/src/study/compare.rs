@@ -37,7 +37,7 @@ pub enum Verdict {
 pub struct Change {
     /// The record's id.
     pub id: String,
-    /// `time`, `bytes`, or the kind of the error.
+    /// `time`, `bytes`, `ratio`, or the kind of the error.
     pub measure: String,
     /// In the first run and in the second.
     pub values: [f64; 2],
@@ -70,16 +70,17 @@ impl Comparison {
 /// Compares `after` with `before`.
 pub fn compare(before: &Run, after: &Run, thresholds: Thresholds) -> Comparison {
     let found: BTreeMap<&str, &Record> = after.records.iter().map(|r| (r.id.as_str(), r)).collect();
-    let drift = drift(before, after);
+    let drift = drift(before, after, YARDSTICK);
     let mut comparison =
         Comparison { changes: Vec::new(), drift, gone: Vec::new(), doubts: doubts(before, after) };
-    for old in before.records.iter().filter(|record| record.id != YARDSTICK) {
+    for old in before.records.iter().filter(|record| record.word(0) != "yardstick") {
         let new = found.get(old.id.as_str()).copied();
         for (measure, value) in measures(old) {
             let other = new.and_then(|new| measures(new).into_iter().find(|(m, _)| *m == measure));
             match other {
                 Some((_, other)) => {
-                    let drift = drift.filter(|_| measure == "time" && is_beside_yardstick(&old.id));
+                    let yardstick = yardstick(old).filter(|_| measure == "time");
+                    let drift = yardstick.and_then(|id| self::drift(before, after, &id));
                     comparison.changes.push(change(&old.id, measure, [value, other], drift, thresholds));
                 }
                 None => comparison.gone.push(format!("{} {measure}", old.id)),
@@ -89,23 +90,29 @@ pub fn compare(before: &Run, after: &Run, thresholds: Thresholds) -> Comparison 
     comparison
 }
 
-/// Time of the yardstick in the second run over that in the first.
-fn drift(before: &Run, after: &Run) -> Option<Interval> {
-    let of = |run: &Run| run.records.iter().find(|record| record.id == YARDSTICK)?.time;
+/// Time of a yardstick in the second run over that in the first.
+fn drift(before: &Run, after: &Run, yardstick: &str) -> Option<Interval> {
+    let of = |run: &Run| run.records.iter().find(|record| record.id == yardstick)?.time;
     let (old, new) = (of(before)?, of(after)?);
     Some(Interval { median: new.median / old.median, low: new.low / old.high, high: new.high / old.low })
 }
 
-fn is_beside_yardstick(id: &str) -> bool {
-    id.starts_with("lookup/") || id.starts_with("integral/")
+/// The yardstick that a record was timed in turns with.
+fn yardstick(record: &Record) -> Option<String> {
+    match record.word(0) {
+        "lookup" | "integral" => Some(YARDSTICK.to_owned()),
+        "gpu" => Some(format!("yardstick/gpu/{}", record.word(1))),
+        _ => None,
+    }
 }
 
 fn measures(record: &Record) -> Vec<(String, Interval)> {
     let exact = |x: f64| Interval { median: x, low: x, high: x };
     let time = record.time.map(|time| ("time".to_owned(), time));
     let bytes = record.bytes.map(|bytes| ("bytes".to_owned(), exact(bytes as f64)));
+    let ratio = record.ratio.map(|ratio| ("ratio".to_owned(), ratio));
     let errors = record.errors.iter().map(|(kind, error)| (kind.clone(), exact(*error)));
-    time.into_iter().chain(bytes).chain(errors).collect()
+    time.into_iter().chain(bytes).chain(ratio).chain(errors).collect()
 }
 
 fn change(
@@ -115,7 +122,8 @@ fn change(
     drift: Option<Interval>,
     thresholds: Thresholds,
 ) -> Change {
-    let is_error = measure != "time" && measure != "bytes";
+    let is_timed = measure == "time" || measure == "ratio";
+    let is_error = !is_timed && measure != "bytes";
     // Two errors in the noise of rounding are equal.
     let floor = if is_error { thresholds.error_floor } else { f64::MIN_POSITIVE };
     let raised = |x: f64| x.max(floor);
@@ -125,7 +133,7 @@ fn change(
         low: raised(new.low) / raised(old.high) / drift.high,
         high: raised(new.high) / raised(old.low) / drift.low,
     };
-    let threshold = 1.0 + if measure == "time" { thresholds.time } else { thresholds.error };
+    let threshold = 1.0 + if is_timed { thresholds.time } else { thresholds.error };
     let verdict = if ratio.median > threshold && ratio.low > 1.0 {
         Verdict::Worse
     } else if ratio.median < 1.0 / threshold && ratio.high < 1.0 {
@@ -230,6 +238,26 @@ mod tests {
         assert!((same.changes[0].ratio.median - 1.0).abs() < 1e-12);
         // On a machine that is faster by a fifth, the same times are a loss.
         assert!(!compare(&before, &scaled(1.0, 1.0 / 1.2), Thresholds::default()).is_good());
+    }
+
+    #[test]
+    fn a_device_has_its_own_yardstick_and_its_ratios_are_compared() {
+        let time = |median: f64| Interval { median, low: 0.99 * median, high: 1.01 * median };
+        let on_device = |clock: f64, by: f64| {
+            let mut run = run();
+            run.records.push(Record::new("yardstick/gpu/1080p", "frame").timed(time(clock)));
+            run.records.push(Record::new("gpu/1080p/compute/empty", "frame").timed(time(3.0 * by)));
+            run.records
+                .push(Record::new("ratio/gpu/1080p/line_over_quad", "ratio").ratio(time(by), Some(0.5)));
+            run
+        };
+        let before = on_device(1.0, 1.0);
+        let slower = compare(&before, &on_device(1.3, 1.3), Thresholds::default());
+        let worse: Vec<_> = slower.changes.iter().filter(|c| c.verdict == Verdict::Worse).collect();
+        // The clock explains the frame, and not the ratio.
+        assert_eq!(worse.iter().map(|c| c.measure.as_str()).collect::<Vec<_>>(), ["ratio"]);
+        let worse = compare(&before, &on_device(1.0, 1.3), Thresholds::default());
+        assert_eq!(worse.changes.iter().filter(|c| c.verdict == Verdict::Worse).count(), 2);
     }
 
     #[test]

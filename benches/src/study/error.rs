@@ -29,6 +29,12 @@ pub enum StudyError {
     /// A fit failed.
     #[error(transparent)]
     Fit(#[from] ltc_fit::FitError),
+    /// There is no graphics device.
+    #[error("{0}")]
+    NoDevice(String),
+    /// A device failed.
+    #[error(transparent)]
+    Gpu(#[from] ltc_shade_gpu::GpuError),
     /// A picture failed.
     #[error(transparent)]
     Render(#[from] ltc_render::RenderError),

@@ -7,12 +7,17 @@ use serde_json::{Value, json};
 
 use super::{Record, Run};
 
-/// A row for each record: id, unit, time with its interval in nanoseconds, bytes, and every kind of error.
+/// A row for each record: id, unit, time with its interval in nanoseconds, bytes, every kind of error, then the ratio
+/// with its interval and what it may be.
 pub fn csv(run: &Run) -> String {
     let mut kinds: Vec<&str> = run.records.iter().flat_map(|r| r.errors.keys()).map(String::as_str).collect();
     kinds.sort_unstable();
     kinds.dedup();
-    let mut text = format!("id,per,time_ns,time_low_ns,time_high_ns,bytes,{}\n", kinds.join(","));
+    let mut text = format!(
+        "id,per,time_ns,time_low_ns,time_high_ns,bytes,{}{}ratio,ratio_low,ratio_high,asked\n",
+        kinds.join(","),
+        if kinds.is_empty() { "" } else { "," }
+    );
     let number = |x: Option<f64>| x.map(|x| x.to_string()).unwrap_or_default();
     for record in &run.records {
         let time = record.time;
@@ -20,13 +25,16 @@ pub fn csv(run: &Run) -> String {
         cells.extend([time.map(|t| t.median), time.map(|t| t.low), time.map(|t| t.high)].map(number));
         cells.push(record.bytes.map(|b| b.to_string()).unwrap_or_default());
         cells.extend(kinds.iter().map(|kind| number(record.errors.get(*kind).copied())));
+        let ratio = record.ratio;
+        cells.extend([ratio.map(|r| r.median), ratio.map(|r| r.low), ratio.map(|r| r.high)].map(number));
+        cells.push(number(record.asked));
         let _ = writeln!(text, "{}", cells.join(","));
     }
     text
 }
 
 /// [Bencher Metric Format](https://bencher.dev/docs/reference/bencher-metric-format/): by id the measures `latency` (ns),
-/// `file-size` (bytes) and `error-<kind>`.
+/// `file-size` (bytes), `ratio` and `error-<kind>`.
 pub fn bencher(run: &Run) -> Value {
     let metrics = |record: &Record| {
         let mut metrics = BTreeMap::new();
@@ -36,6 +44,10 @@ pub fn bencher(run: &Run) -> Value {
         }
         if let Some(bytes) = record.bytes {
             metrics.insert("file-size".to_owned(), json!({ "value": bytes }));
+        }
+        if let Some(ratio) = record.ratio {
+            let value = json!({ "value": ratio.median, "lower_value": ratio.low, "upper_value": ratio.high });
+            metrics.insert("ratio".to_owned(), value);
         }
         for (kind, error) in &record.errors {
             metrics.insert(format!("error-{}", kind.replace('_', "-")), json!({ "value": error }));
@@ -59,6 +71,11 @@ pub fn action(run: &Run) -> Value {
         }
         if let Some(bytes) = record.bytes {
             entries.push(json!({ "name": format!("{} size", record.id), "unit": "bytes", "value": bytes }));
+        }
+        if let Some(ratio) = record.ratio {
+            let range = format!("± {:.3}", 0.5 * (ratio.high - ratio.low));
+            let name = format!("{} ratio", record.id);
+            entries.push(json!({ "name": name, "unit": "ratio", "value": ratio.median, "range": range }));
         }
         for (kind, error) in &record.errors {
             let name = format!("{} error {kind}", record.id);

@@ -19,6 +19,9 @@ pub struct Machine {
     /// The graphics device that frames were shaded on, where there was one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gpu: Option<String>,
+    /// What told the times of records that begin with `gpu/`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gpu_clock: Option<String>,
 }
 
 impl Machine {
@@ -31,7 +34,18 @@ impl Machine {
             build: build(),
             load: load(),
             gpu: None,
+            gpu_clock: None,
         }
+    }
+}
+
+impl Machine {
+    /// A name for files: processor and graphics device in lower case, without versions of drivers.
+    pub fn slug(&self) -> String {
+        let gpu = self.gpu.as_deref().map_or("no-gpu", |gpu| gpu.split(" (").next().unwrap_or(gpu));
+        let name = format!("{} {gpu}", self.cpu.split('@').next().unwrap_or(&self.cpu)).to_lowercase();
+        let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+        words.collect::<Vec<_>>().join("-")
     }
 }
 
@@ -57,5 +71,20 @@ fn build() -> String {
         format!("{mode}, baseline instructions; batches choose theirs at run time")
     } else {
         format!("{mode}, {}", named.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slug_is_a_plain_file_name() {
+        let machine = |cpu: &str, gpu: Option<&str>| {
+            Machine { cpu: cpu.into(), gpu: gpu.map(str::to_owned), ..Machine::default() }.slug()
+        };
+        let found = machine("Intel(R) Xeon(R) @ 2.10GHz", Some("llvmpipe (LLVM 15) (software, vulkan, x)"));
+        assert_eq!(found, "intel-r-xeon-r-llvmpipe");
+        assert_eq!(machine("../x y", None), "x-y-no-gpu");
     }
 }

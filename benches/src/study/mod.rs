@@ -7,6 +7,7 @@
 mod compare;
 mod error;
 mod exports;
+pub mod gpu;
 pub mod integrals;
 mod lookups;
 mod machine;
@@ -29,7 +30,7 @@ pub use record::{Interval, Record, Run, SCHEMA, YARDSTICK};
 use timer::{Rounds, Task};
 
 /// What to measure.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Plan {
     /// In under a minute, with fewer cases, smaller pictures and wider intervals.
     pub quick: bool,
@@ -73,9 +74,50 @@ pub fn run(plan: &Plan, catalogue: &Catalogue, observe: &dyn Fn(Step<'_>)) -> Re
     let of_pictures = RenderTables { isotropic: isotropic.table(), anisotropic: anisotropic.table() };
     let (pictures, device) = pictures::measure(&of_pictures, plan, |scene| step(2, scene))?;
     records.extend(pictures);
-    step(STAGES, "done");
     machine.gpu = device.ok();
-    Ok(Run {
+    on_device(&mut machine, &mut records, plan, catalogue, &|form| step(3, form))?;
+    step(STAGES, "done");
+    Ok(finished(plan, machine, records))
+}
+
+/// Measures what a graphics device does, and nothing else: for a machine that is had for a short time.
+///
+/// # Errors
+/// [`StudyError`]; [`StudyError::NoDevice`] where there is none.
+pub fn run_on_device(
+    plan: &Plan,
+    catalogue: &Catalogue,
+    observe: &dyn Fn(Step<'_>),
+) -> Result<Run, StudyError> {
+    let step = |done: usize, stage: &str| observe(Step { stage, done, total: 1 });
+    let (mut machine, mut records) = (Machine::here(), Vec::new());
+    if let Some(reason) = on_device(&mut machine, &mut records, plan, catalogue, &|form| step(0, form))? {
+        return Err(StudyError::NoDevice(reason));
+    }
+    step(1, "done");
+    Ok(finished(plan, machine, records))
+}
+
+/// Why there is no device, if there is none.
+fn on_device(
+    machine: &mut Machine,
+    records: &mut Vec<Record>,
+    plan: &Plan,
+    catalogue: &Catalogue,
+    step: &dyn Fn(&str),
+) -> Result<Option<String>, StudyError> {
+    match gpu::measure(catalogue, plan, step)? {
+        Ok(found) => {
+            records.extend(found.records);
+            (machine.gpu, machine.gpu_clock) = (Some(found.device), Some(found.clock));
+            Ok(None)
+        }
+        Err(reason) => Ok(Some(reason)),
+    }
+}
+
+fn finished(plan: &Plan, machine: Machine, records: Vec<Record>) -> Run {
+    Run {
         schema: SCHEMA,
         tool: env!("CARGO_PKG_VERSION").to_owned(),
         quick: plan.quick,
@@ -83,7 +125,7 @@ pub fn run(plan: &Plan, catalogue: &Catalogue, observe: &dyn Fn(Step<'_>)) -> Re
         commit: plan.commit.clone(),
         machine,
         records,
-    })
+    }
 }
 
 /// Lookups and integrals, timed in turns, so that their ratios are those of the same minute.

@@ -1,9 +1,11 @@
 //! A run as one page that needs nothing else.
 
+mod device;
+
 use std::fmt::Write;
 
 use super::plot::{Mark, Plot, Series, escape, short};
-use super::{Record, Run};
+use super::{Interval, Record, Run};
 
 const STYLE: &str = include_str!("page.css");
 const METHOD: &str = include_str!("method.html");
@@ -30,6 +32,7 @@ pub fn page(run: &Run) -> String {
         &integrals(run),
     );
     pictures(&mut body, run);
+    device::sections(&mut body, run);
     let _ = writeln!(body, "{METHOD}");
     all(&mut body, run);
     format!(
@@ -45,6 +48,9 @@ fn head(run: &Run) -> String {
     };
     row("Processor", &format!("{}, {} threads, {}", machine.cpu, machine.threads, machine.system));
     row("Build", &format!("ltc {}, {}", run.tool, machine.build));
+    if let Some(clock) = &machine.gpu_clock {
+        row("Clock of its forms", clock);
+    }
     row("Graphics", machine.gpu.as_deref().unwrap_or("no device: frames are shaded on the processor alone"));
     row("Commit", run.commit.as_deref().unwrap_or("not named"));
     row("Date", &run.date);
@@ -176,9 +182,15 @@ fn overtaking(ltc: &[&Record], sampling: &[&Record]) -> Option<String> {
 fn all(body: &mut String, run: &Run) {
     body.push_str("<h2>All figures</h2>\n<table><thead><tr><th>what</th><th>time</th><th>95 % interval</th><th>bytes</th><th>errors</th></tr></thead><tbody>\n");
     for record in &run.records {
-        let unit = if record.per == "frame" { (1e-6, "ms") } else { (1.0, "ns") };
-        let time = record.time.map(|t| format!("{} {}", short(t.median * unit.0), unit.1));
-        let range = record.time.map(|t| format!("{} to {}", short(t.low * unit.0), short(t.high * unit.0)));
+        let unit = if record.per.ends_with("frame") { (1e-6, "ms") } else { (1.0, "ns") };
+        let range = |t: Interval, unit: f64| format!("{} to {}", short(t.low * unit), short(t.high * unit));
+        let (time, range) = match (record.time, record.ratio) {
+            (Some(t), _) => {
+                (Some(format!("{} {}", short(t.median * unit.0), unit.1)), Some(range(t, unit.0)))
+            }
+            (None, Some(r)) => (Some(format!("× {}", short(r.median))), Some(range(r, 1.0))),
+            (None, None) => (None, None),
+        };
         let errors: Vec<String> =
             record.errors.iter().map(|(kind, x)| format!("{kind} {}", short(*x))).collect();
         let _ = writeln!(

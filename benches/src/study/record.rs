@@ -36,7 +36,7 @@ pub struct Run {
 pub struct Record {
     /// Its name for ever: lower-case words between slashes, from the general to the particular.
     pub id: String,
-    /// What one unit of `time` does: "lookup", "light", "frame", "table".
+    /// What one unit of `time` does: "lookup", "light", "frame", "light of a frame", "table"; "ratio" for what has none.
     pub per: String,
     /// Time of one unit, in nanoseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -44,6 +44,12 @@ pub struct Record {
     /// Size, where it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bytes: Option<u64>,
+    /// How one thing's time compares with another's, turn by turn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ratio: Option<Interval>,
+    /// What the ratio may be, where something is asked of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub asked: Option<f64>,
     /// Errors by kind: `tv_mean`, `tv_p95`, `max`, `rms`, `relative_rmse`, `rmse`, `flip`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub errors: BTreeMap<String, f64>,
@@ -66,6 +72,13 @@ impl Record {
     #[must_use]
     pub fn timed(mut self, time: Interval) -> Self {
         self.time = Some(time);
+        self
+    }
+
+    /// With a ratio, and what it may be.
+    #[must_use]
+    pub fn ratio(mut self, ratio: Interval, asked: Option<f64>) -> Self {
+        (self.ratio, self.asked) = (Some(ratio), asked);
         self
     }
 

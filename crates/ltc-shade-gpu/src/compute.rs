@@ -9,7 +9,7 @@ use crate::{Gpu, GpuError};
 /// Invocations in a workgroup; every entry point says `@workgroup_size(64)`.
 const WORKGROUP: u32 = 64;
 /// Pre-filled into every output: a NaN that no arithmetic makes, so that what stays unwritten is told from any result.
-const UNWRITTEN: u32 = 0xFFF1_5EED;
+pub(crate) const UNWRITTEN: u32 = 0xFFF1_5EED;
 
 /// One entry point of a program, compiled.
 #[derive(Debug)]

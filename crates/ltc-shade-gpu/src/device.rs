@@ -99,20 +99,31 @@ impl Gpu {
         if !adapter.get_downlevel_capabilities().flags.contains(DownlevelFlags::COMPUTE_SHADERS) {
             return Err(GpuError::device("it has no compute shaders"));
         }
-        let filterable = adapter.features() & Features::FLOAT32_FILTERABLE;
-        let filters_f32 = options.filtering == Filtering::Hardware && options.texels == Texels::F32;
-        if filters_f32 && filterable.is_empty() {
+        let features = adapter.features() & (Features::FLOAT32_FILTERABLE | Features::TIMESTAMP_QUERY);
+        if !can_filter(features, options.filtering, options.texels) {
             return Err(GpuError::NotFilterable { device: info.to_string() });
         }
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("ltc"),
-            required_features: filterable,
+            required_features: features,
             required_limits: adapter.limits(),
             ..Default::default()
         };
         let (device, queue) =
             pollster::block_on(adapter.request_device(&descriptor)).map_err(GpuError::device)?;
         Ok(Self { device, queue, info, filtering: options.filtering, texels: options.texels })
+    }
+
+    /// The same device, with tables interpolated and held in another way.
+    ///
+    /// # Errors
+    /// [`GpuError::NotFilterable`].
+    pub fn with_tables(&self, filtering: Filtering, texels: Texels) -> Result<Self, GpuError> {
+        if !can_filter(self.device.features(), filtering, texels) {
+            return Err(GpuError::NotFilterable { device: self.info.to_string() });
+        }
+        let (device, queue, info) = (self.device.clone(), self.queue.clone(), self.info.clone());
+        Ok(Self { device, queue, info, filtering, texels })
     }
 
     /// Name, back end and driver.
@@ -152,6 +163,11 @@ impl Gpu {
             None => result,
         }
     }
+}
+
+fn can_filter(features: Features, filtering: Filtering, texels: Texels) -> bool {
+    let filters_f32 = filtering == Filtering::Hardware && texels == Texels::F32;
+    !filters_f32 || features.contains(Features::FLOAT32_FILTERABLE)
 }
 
 fn backends() -> Result<Backends, GpuError> {

@@ -8,6 +8,8 @@
 //! The WGSL comes in [`modules`]: pure functions that know no bindings, and thin entry points that hold them. A program is
 //! their concatenation; [`ShaderRequest`] gives the functions alone, just those asked for.
 //!
+//! [`timing`] says how long programs over a grid of pixels take.
+//!
 //! [`ShaderRequest::export`] writes them in other languages. [`probe`] tests a device by feature.
 //!
 //! Feature `device` (on) brings the devices, through wgpu; `export` (on) the other languages, through naga alone.
@@ -72,6 +74,8 @@ mod table_textures;
 mod texture_atlas;
 #[cfg(feature = "device")]
 mod textured;
+#[cfg(feature = "device")]
+pub mod timing;
 
 #[cfg(feature = "device")]
 pub use device::{Gpu, GpuInfo, GpuOptions, Texels};

@@ -63,6 +63,14 @@ impl TableTextures {
         Ok(Self { kind: table.kind(), axes, texels })
     }
 
+    /// The uniform `LtcAxes` of a table, for hosts that hold its texels elsewhere.
+    ///
+    /// # Errors
+    /// [`GpuError::UnsupportedAxis`].
+    pub fn axes_bytes(table: &Table) -> Result<Vec<u8>, GpuError> {
+        Ok(bytemuck::bytes_of(&AxesUniform::of(table)?).to_vec())
+    }
+
     /// Isotropic or anisotropic.
     pub fn kind(&self) -> Kind {
         self.kind

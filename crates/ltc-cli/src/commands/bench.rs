@@ -11,7 +11,7 @@ use ltc_table::files::write_atomically;
 use crate::progress::Reporter;
 use crate::tables::Tables;
 
-/// Measures run time against error on this machine: tables, lookups, integrals, pictures.
+/// Measures run time against error on this machine: tables, lookups, integrals, pictures, and forms on the graphics device.
 ///
 /// Writes bench.json, bench.csv, bench.html (one page that needs nothing else), bencher.json (Bencher Metric Format) and
 /// github-action-benchmark.json. Compare two runs with `ltc bench compare`.
@@ -25,6 +25,12 @@ pub struct Bench {
     /// In under a minute, with fewer cases, smaller pictures and wider intervals.
     #[arg(long)]
     quick: bool,
+    /// What the graphics device does, and nothing else; fails where there is none.
+    #[arg(long)]
+    device_only: bool,
+    /// Keeps the run in this folder of results, too: JSON, CSV and page, by machine and date.
+    #[arg(long, value_name = "DIR")]
+    keep: Option<PathBuf>,
     /// Folder to write to; made if it is not there.
     #[arg(short, long, value_name = "DIR", default_value = "bench")]
     output: PathBuf,
@@ -74,19 +80,32 @@ impl Bench {
         let plan = Plan { quick: self.quick, date, commit: self.commit };
         let reporter = Reporter::new();
         let observe = |step: Step<'_>| reporter.report(step.stage, step.done, step.total, "");
-        let run = study::run(&plan, &tables.catalogue()?, &observe)?;
+        let measure = if self.device_only { study::run_on_device } else { study::run };
+        let run = measure(&plan, &tables.catalogue()?, &observe)?;
         reporter.finish();
         let json = serde_json::to_string_pretty(&run)?;
+        let (csv, page) = (study::csv(&run), study::page(&run));
         for (name, text) in [
             ("bench.json", &json),
-            ("bench.csv", &study::csv(&run)),
-            ("bench.html", &study::page(&run)),
+            ("bench.csv", &csv),
+            ("bench.html", &page),
             ("bencher.json", &serde_json::to_string_pretty(&study::bencher(&run))?),
             ("github-action-benchmark.json", &serde_json::to_string_pretty(&study::action(&run))?),
         ] {
-            let path = folder.join(name);
-            write_atomically(&path, text.as_bytes())
-                .with_context(|| format!("cannot write {}", path.display()))?;
+            write(&folder.join(name), text)?;
+        }
+        if let Some(results) = &self.keep {
+            let folder = results.join(run.machine.slug());
+            std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+            let date = run.date.replace(':', "");
+            for (kind, text) in [("json", &json), ("csv", &csv), ("html", &page)] {
+                write(&folder.join(format!("{date}.{kind}")), text)?;
+            }
+        }
+        for ratio in run.records.iter().filter(|record| record.asked.is_some()) {
+            let (Some(found), Some(asked)) = (ratio.ratio, ratio.asked) else { continue };
+            let (low, high) = (found.low, found.high);
+            eprintln!("{}: {:.3} ({low:.3} to {high:.3}), asked at most {asked}", ratio.id, found.median);
         }
         if self.json {
             outln!("{json}");
@@ -148,6 +167,10 @@ impl Compare {
         outln!("nothing worse among {} figures", comparison.changes.len());
         Ok(())
     }
+}
+
+fn write(path: &Path, text: &str) -> Result<()> {
+    write_atomically(path, text.as_bytes()).with_context(|| format!("cannot write {}", path.display()))
 }
 
 fn read(path: &Path) -> Result<Run> {

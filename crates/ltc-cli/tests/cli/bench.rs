@@ -28,6 +28,15 @@ fn a_quick_run_writes_a_page_and_what_dashboards_read() {
     for group in ["table/", "lookup/", "integral/", "image/"] {
         assert!(records.iter().any(|r| r["id"].as_str().unwrap().starts_with(group)), "{group}");
     }
+    // Where there is a graphics device, its forms, and the ratios that are asked of them.
+    let starts = |with: &str| records.iter().filter(|r| r["id"].as_str().unwrap().starts_with(with)).count();
+    if run["machine"]["gpu"].is_string() {
+        assert!(starts("gpu/") > 20 && starts("ratio/gpu/") > 10 && starts("yardstick/gpu/") == 1);
+        assert!(run["machine"]["gpu_clock"].is_string());
+        assert_eq!(records.iter().filter(|r| r["asked"].is_number()).count(), 3);
+    } else {
+        assert_eq!(starts("gpu/") + starts("ratio/gpu/"), 0);
+    }
     for record in records {
         let times = ["low", "median", "high"].map(|k| record["time"][k].as_f64());
         if let [Some(low), Some(median), Some(high)] = times {

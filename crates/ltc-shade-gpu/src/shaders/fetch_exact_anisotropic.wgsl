@@ -7,19 +7,45 @@ fn ltc_fetch_anisotropic(
     place: LtcAnisotropicPlace,
 ) -> LtcTexels {
     let phis = u32(axes.phi.last) + 1u;
-    let group = phis * (u32(axes.theta.last) + 1u);
+    let group = vec3u(0u, 0u, phis * (u32(axes.theta.last) + 1u));
+    let weights = ltc_weights(place.lambda, place.alpha);
     var sum = LtcTexels(vec4f(0.0), vec4f(0.0), vec4f(0.0));
-    for (var corner = 0u; corner < 16u; corner++) {
-        let upper = (vec4u(corner) >> vec4u(0u, 1u, 2u, 3u)) & vec4u(1u);
-        let weight = ltc_weight(place.lambda, upper.x) * ltc_weight(place.alpha, upper.y)
-            * ltc_weight(place.phi, upper.z) * ltc_weight(place.theta, upper.w);
-        let layer = place.phi.cell + upper.z + phis * (place.theta.cell + upper.w);
-        let at = vec3u(place.lambda.cell + upper.x, place.alpha.cell + upper.y, layer);
-        sum.g0 += weight * textureLoad(texture, at, 0);
-        sum.g1 += weight * textureLoad(texture, at + vec3u(0u, 0u, group), 0);
-        sum.g2 += weight * textureLoad(texture, at + vec3u(0u, 0u, 2u * group), 0);
+    for (var slice = 0u; slice < 4u; slice++) {
+        let upper = vec2u(slice & 1u, slice >> 1u);
+        let weight = ltc_weight(place.phi, upper.x) * ltc_weight(place.theta, upper.y);
+        var at = vec3u(place.lambda.cell, place.alpha.cell, place.phi.cell + upper.x + phis * (place.theta.cell + upper.y));
+        sum.g0 += weight * ltc_fetch_four_anisotropic(texture, at, weights);
+        at += group;
+        sum.g1 += weight * ltc_fetch_four_anisotropic(texture, at, weights);
+        at += group;
+        sum.g2 += weight * ltc_fetch_four_anisotropic(texture, at, weights);
     }
     return sum;
+}
+
+// Between four neighbours of one slice.
+fn ltc_fetch_four_anisotropic(texture: texture_3d<f32>, at: vec3u, weights: vec4f) -> vec4f {
+    return weights.x * textureLoad(texture, at, 0)
+        + weights.y * textureLoad(texture, at + vec3u(1u, 0u, 0u), 0)
+        + weights.z * textureLoad(texture, at + vec3u(0u, 1u, 0u), 0)
+        + weights.w * textureLoad(texture, at + vec3u(1u, 1u, 0u), 0);
+}
+
+// The nearest entry alone.
+fn ltc_fetch_nearest_anisotropic(
+    texture: texture_3d<f32>,
+    axes: LtcAxes,
+    place: LtcAnisotropicPlace,
+) -> LtcTexels {
+    let phis = u32(axes.phi.last) + 1u;
+    let group = vec3u(0u, 0u, phis * (u32(axes.theta.last) + 1u));
+    let slice = ltc_nearest_node(place.phi) + phis * ltc_nearest_node(place.theta);
+    let at = vec3u(ltc_nearest_node(place.lambda), ltc_nearest_node(place.alpha), slice);
+    return LtcTexels(
+        textureLoad(texture, at, 0),
+        textureLoad(texture, at + group, 0),
+        textureLoad(texture, at + 2u * group, 0),
+    );
 }
 
 // The table's answer for the unit vector `wo`, in the shading frame.
@@ -33,8 +59,7 @@ fn ltc_lookup_anisotropic(
     let place = ltc_anisotropic_place(axes, wo, alpha_x, alpha_y);
     var texels = ltc_fetch_anisotropic(texture, axes, place);
     if !ltc_regular(texels) {
-        let nearest = ltc_anisotropic_nearest(place);
-        texels = ltc_with_matrix(texels, ltc_fetch_anisotropic(texture, axes, nearest));
+        texels = ltc_with_matrix(texels, ltc_fetch_nearest_anisotropic(texture, axes, place));
     }
     return ltc_anisotropic_decode(texels, place);
 }

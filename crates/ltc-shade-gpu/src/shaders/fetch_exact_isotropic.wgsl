@@ -2,16 +2,31 @@
 // Needs: table, isotropic.
 
 fn ltc_fetch_isotropic(texture: texture_2d_array<f32>, place: LtcIsotropicPlace) -> LtcTexels {
-    var sum = LtcTexels(vec4f(0.0), vec4f(0.0), vec4f(0.0));
-    for (var corner = 0u; corner < 4u; corner++) {
-        let upper = vec2u(corner & 1u, corner >> 1u);
-        let weight = ltc_weight(place.alpha, upper.x) * ltc_weight(place.theta, upper.y);
-        let at = vec2u(place.alpha.cell, place.theta.cell) + upper;
-        sum.g0 += weight * textureLoad(texture, at, 0, 0);
-        sum.g1 += weight * textureLoad(texture, at, 1, 0);
-        sum.g2 += weight * textureLoad(texture, at, 2, 0);
-    }
-    return sum;
+    let at = vec2u(place.alpha.cell, place.theta.cell);
+    let weights = ltc_weights(place.alpha, place.theta);
+    return LtcTexels(
+        ltc_fetch_four_isotropic(texture, at, 0, weights),
+        ltc_fetch_four_isotropic(texture, at, 1, weights),
+        ltc_fetch_four_isotropic(texture, at, 2, weights),
+    );
+}
+
+// Between four neighbours of one layer.
+fn ltc_fetch_four_isotropic(texture: texture_2d_array<f32>, at: vec2u, layer: i32, weights: vec4f) -> vec4f {
+    return weights.x * textureLoad(texture, at, layer, 0)
+        + weights.y * textureLoad(texture, at + vec2u(1u, 0u), layer, 0)
+        + weights.z * textureLoad(texture, at + vec2u(0u, 1u), layer, 0)
+        + weights.w * textureLoad(texture, at + vec2u(1u, 1u), layer, 0);
+}
+
+// The nearest entry alone.
+fn ltc_fetch_nearest_isotropic(texture: texture_2d_array<f32>, place: LtcIsotropicPlace) -> LtcTexels {
+    let at = vec2u(ltc_nearest_node(place.alpha), ltc_nearest_node(place.theta));
+    return LtcTexels(
+        textureLoad(texture, at, 0, 0),
+        textureLoad(texture, at, 1, 0),
+        textureLoad(texture, at, 2, 0),
+    );
 }
 
 // The table's answer for the unit vector `wo`, in the shading frame.
@@ -24,8 +39,7 @@ fn ltc_lookup_isotropic(
     let place = ltc_isotropic_place(axes, wo, alpha);
     var texels = ltc_fetch_isotropic(texture, place);
     if !ltc_regular(texels) {
-        let nearest = LtcIsotropicPlace(ltc_nearest(place.theta), ltc_nearest(place.alpha));
-        texels = ltc_with_matrix(texels, ltc_fetch_isotropic(texture, nearest));
+        texels = ltc_with_matrix(texels, ltc_fetch_nearest_isotropic(texture, place));
     }
     return ltc_isotropic_decode(texels, wo);
 }

@@ -48,7 +48,8 @@ fn ltc_lookup_anisotropic(
     var texels = ltc_fetch_anisotropic(texture, filtering, axes, place);
     if !ltc_regular(texels) {
         let nearest = ltc_anisotropic_nearest(place);
-        texels = ltc_with_matrix(texels, ltc_fetch_anisotropic(texture, filtering, axes, nearest));
+        let theta = f32(ltc_nearest_node(place.theta));
+        texels = ltc_with_matrix(texels, ltc_fetch_theta(texture, filtering, axes, nearest, theta));
     }
     return ltc_anisotropic_decode(texels, place);
 }

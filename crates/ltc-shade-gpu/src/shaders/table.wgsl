@@ -85,6 +85,10 @@ fn ltc_nearest(place: LtcPlace) -> LtcPlace {
     return LtcPlace(place.cell, select(0.0, 1.0, place.t > 0.5));
 }
 
+fn ltc_nearest_node(place: LtcPlace) -> u32 {
+    return place.cell + select(0u, 1u, place.t > 0.5);
+}
+
 // Whether the matrix is a lobe's: det M > 0. Entries have it, but very thin lobes that lie askew to each other may
 // interpolate to a matrix without; the nearest entry answers then, as on the CPU.
 fn ltc_regular(texels: LtcTexels) -> bool {
@@ -100,6 +104,13 @@ fn ltc_with_matrix(texels: LtcTexels, other: LtcTexels) -> LtcTexels {
 // The weight of the upper or lower node of a place.
 fn ltc_weight(place: LtcPlace, upper: u32) -> f32 {
     return select(1.0 - place.t, place.t, upper == 1u);
+}
+
+// The weights of four neighbours: neither node upper, that of a, that of b, both.
+fn ltc_weights(a: LtcPlace, b: LtcPlace) -> vec4f {
+    let low = vec2f(1.0 - a.t, a.t) * (1.0 - b.t);
+    let high = vec2f(1.0 - a.t, a.t) * b.t;
+    return vec4f(low, high);
 }
 
 // The place in texels, for a filtering fetch.

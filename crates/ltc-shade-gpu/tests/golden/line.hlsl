@@ -268,6 +268,8 @@ LtcSegment ConstructLtcSegment(float3 arg0, float3 arg1, float3 arg2, float arg3
 
 LtcSegment ltc_segment(float3 p0, float3 p1)
 {
+    bool local = (bool)0;
+
     const float _e2 = ltc_largest_component(p0);
     const float _e3 = ltc_largest_component(p1);
     const float _e5 = ltc_floor_power_of_two(max(_e2, _e3));
@@ -278,14 +280,25 @@ LtcSegment ltc_segment(float3 p0, float3 p1)
     float shrink = (1.0 / _e5);
     float3 a = (p0 * shrink);
     float3 b = (p1 * shrink);
-    const float3 _e19 = ltc_cross(a, b);
-    if ((dot(_e19, _e19) >= LTC_SMALL_SQUARE)) {
-        const LtcSegment ltcsegment_1 = ConstructLtcSegment(a, b, _e19, 1.0, shrink, true);
+    float3 plain = cross(a, b);
+    if ((dot(plain, plain) > ((0.001 * dot(a, a)) * dot(b, b)))) {
+        local = (dot(plain, plain) >= LTC_SMALL_SQUARE);
+    } else {
+        local = false;
+    }
+    bool _e33 = local;
+    if (_e33) {
+        const LtcSegment ltcsegment_1 = ConstructLtcSegment(a, b, plain, 1.0, shrink, true);
         return ltcsegment_1;
     }
-    const float3 _e26 = ltc_unit_or_zero(_e19);
-    const LtcSegment ltcsegment_2 = ConstructLtcSegment(a, b, _e26, dot(_e19, _e26), shrink, (dot(_e26, _e26) > 0.5));
-    return ltcsegment_2;
+    const float3 _e37 = ltc_cross(a, b);
+    if ((dot(_e37, _e37) >= LTC_SMALL_SQUARE)) {
+        const LtcSegment ltcsegment_2 = ConstructLtcSegment(a, b, _e37, 1.0, shrink, true);
+        return ltcsegment_2;
+    }
+    const float3 _e44 = ltc_unit_or_zero(_e37);
+    const LtcSegment ltcsegment_3 = ConstructLtcSegment(a, b, _e44, dot(_e37, _e44), shrink, (dot(_e44, _e44) > 0.5));
+    return ltcsegment_3;
 }
 
 // Unit vector from the shading point towards the nearest point of the line.
@@ -307,25 +320,25 @@ LtcKept ConstructLtcKept(float3 arg0, float3 arg1, float arg2) {
 // (z x moment) / (z1 - z0), which cancels nowhere.
 LtcKept ltc_clip_above(float3 p0, float3 p1, float3 moment)
 {
-    bool local = (bool)0;
     bool local_1 = (bool)0;
+    bool local_2 = (bool)0;
 
     if ((p0.z <= 0.0)) {
-        local = (p1.z <= 0.0);
+        local_1 = (p1.z <= 0.0);
     } else {
-        local = false;
+        local_1 = false;
     }
-    bool _e12 = local;
+    bool _e12 = local_1;
     if (_e12) {
         const LtcKept ltckept = ConstructLtcKept(p0, p1, 0.0);
         return ltckept;
     }
     if ((p0.z >= 0.0)) {
-        local_1 = (p1.z >= 0.0);
+        local_2 = (p1.z >= 0.0);
     } else {
-        local_1 = false;
+        local_2 = false;
     }
-    bool _e24 = local_1;
+    bool _e24 = local_2;
     if (_e24) {
         const LtcKept ltckept_1 = ConstructLtcKept(p0, p1, 1.0);
         return ltckept_1;
@@ -351,35 +364,45 @@ float ltc_length(float3 v)
 // between q0 and q1, sine = |q0 x q1|, nearness = c_z / d with d the distance of the line, c towards its nearest point.
 float ltc_cosine_along(float3 q0, float3 q1, float sine, float nearness)
 {
-    bool local_2 = (bool)0;
+    float2 near = (float2)0;
     bool local_3 = (bool)0;
 
-    const float _e4 = ltc_length(q0);
-    const float _e5 = ltc_length(q1);
-    if ((_e4 > 0.0)) {
-        local_2 = (_e5 > 0.0);
-    } else {
-        local_2 = false;
+    float2 squares = float2(dot(q0, q0), dot(q1, q1));
+    near = rsqrt(squares);
+    if (!((min(squares.x, squares.y) > 1e-30))) {
+        const float _e15 = ltc_length(q0);
+        const float _e16 = ltc_length(q1);
+        if ((_e15 > 0.0)) {
+            local_3 = (_e16 > 0.0);
+        } else {
+            local_3 = false;
+        }
+        bool _e24 = local_3;
+        if (!(_e24)) {
+            return 0.0;
+        }
+        near = ((1.0).xx / float2(_e15, _e16));
     }
-    bool _e13 = local_2;
-    if (_e13) {
-        local_3 = (sine > 0.0);
-    } else {
-        local_3 = false;
-    }
-    bool _e19 = local_3;
-    if (!(_e19)) {
+    if (!((sine > 0.0))) {
         return 0.0;
     }
-    float cosine = dot((q0 / (_e4).xxx), (q1 / (_e5).xxx));
-    float unit_sine = ((sine / _e4) / _e5);
+    float _e36 = near.x;
+    float _e39 = near.y;
+    float cosine = dot((q0 * _e36), (q1 * _e39));
+    float _e43 = near.x;
+    float _e46 = near.y;
+    float unit_sine = ((sine * _e43) * _e46);
     float half_tangent = ((cosine >= 0.0) ? (unit_sine / (1.0 + cosine)) : ((1.0 - cosine) / unit_sine));
-    float ends = ((half_tangent * ((q0.z / _e4) + (q1.z / _e5))) * ((1.0 / _e4) + (1.0 / _e5)));
-    float x = (half_tangent * half_tangent);
-    float series = (x * (1.3333333 - (x * (1.6 - (x * (1.7142857 - (x * 1.7777778)))))));
-    const float _e62 = ltc_atan2(unit_sine, cosine);
-    float bow = ((x < 0.015625) ? (half_tangent * series) : (_e62 - unit_sine));
-    return ((nearness * bow) + ends);
+    float _e59 = near.x;
+    float _e63 = near.y;
+    float _e68 = near.x;
+    float _e70 = near.y;
+    float ends = ((half_tangent * ((q0.z * _e59) + (q1.z * _e63))) * (_e68 + _e70));
+    float x = abs(cosine);
+    float g = (((((0.084654704 * x) + 0.5184987) * x) + 0.5707963) / ((((((0.088782445 * x) + 0.7727517) * x) + 1.6603152) * x) + 1.0));
+    float acute = (((unit_sine * unit_sine) * half_tangent) * g);
+    float obtuse = (LTC_PI - (unit_sine * (2.0 + ((1.0 - x) * g))));
+    return ((nearness * ((cosine >= 0.0) ? acute : obtuse)) + ends);
 }
 
 // The integral of D(w) |w x w_t| / |p|^2 dl along the segment, per scaled length: half of eq. 1.6. Of what is above the

@@ -48,8 +48,13 @@ struct LtcBoundary {
     bool started;
     float sum;
 };
+struct LtcPlain {
+    float sum;
+    bool holds;
+};
 const float LTC_PI = 3.1415927;
 const float LTC_TINY = 1e-37;
+const float LTC_PLAIN_COSINE = -0.95;
 
 
 float ltc_largest_component(vec3 v) {
@@ -201,6 +206,11 @@ float ltc_everywhere(LtcLobe lobe) {
     return 1.0;
 }
 
+// theta / sin(theta) from its cosine, in [0, 1].
+float ltc_angle_over_sine(float x) {
+    return (((((0.026367364 * x) + 0.9094872) * x) + 1.5707957) / ((((0.29106498 * x) + 1.2155834) * x) + 1.0));
+}
+
 // The angle whose sine and cosine these are, up to one factor; sine >= 0. Relative error 7e-7 up to a right angle; beyond, by
 // pi - f(-cosine), so that edges near pi keep their value.
 float ltc_edge_angle(float sine, float cosine) {
@@ -208,9 +218,8 @@ float ltc_edge_angle(float sine, float cosine) {
     if (!((length_ > LTC_TINY))) {
         return 0.0;
     }
-    float x = (abs(cosine) / length_);
-    float over_sine = (((((0.026367364 * x) + 0.9094872) * x) + 1.5707957) / ((((0.29106498 * x) + 1.2155834) * x) + 1.0));
-    float acute = (over_sine * (sine / length_));
+    float _e12 = ltc_angle_over_sine((abs(cosine) / length_));
+    float acute = (_e12 * (sine / length_));
     return ((cosine < 0.0) ? (LTC_PI - acute) : acute);
 }
 
@@ -323,58 +332,42 @@ float ltc_facing(vec3 normal, vec3 point, float reach) {
     return ((abs(facing) > ((9.536743e-7 * reach) * length(normal))) ? facing : 0.0);
 }
 
-// The boundary sum of a quad that the surface's horizon does not cut.
-float ltc_quad_above(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
-    vec3 a = vec3(0.0);
-    vec3 b = vec3(0.0);
-    vec3 c = vec3(0.0);
-    vec3 d = vec3(0.0);
-    float sum = 0.0;
-    vec3 begin = vec3(0.0);
-    int i = 0;
-    a = v0;
-    b = v1;
-    c = v2;
-    d = v3;
-    vec3 _e11 = a;
-    vec3 _e12 = ltc_cosine_from_target(lobe, _e11);
-    begin = _e12;
-    bool loop_init = true;
-    while(true) {
-        if (!loop_init) {
-            int _e35 = i;
-            i = (_e35 + 1);
-        }
-        loop_init = false;
-        int _e16 = i;
-        if ((_e16 < 4)) {
-        } else {
-            break;
-        }
-        {
-            vec3 _e19 = b;
-            vec3 _e20 = ltc_cosine_from_target(lobe, _e19);
-            float _e21 = sum;
-            vec3 _e22 = begin;
-            vec3 _e23 = a;
-            vec3 _e24 = b;
-            vec3 _e25 = ltc_cross(_e23, _e24);
-            vec3 _e26 = ltc_cosine_normal(lobe, _e25);
-            float _e28 = ltc_arc(_e22, _e20, _e26, lobe.area_scale);
-            sum = (_e21 + _e28);
-            begin = _e20;
-            vec3 moved = a;
-            vec3 _e31 = b;
-            a = _e31;
-            vec3 _e32 = c;
-            b = _e32;
-            vec3 _e33 = d;
-            c = _e33;
-            d = moved;
-        }
+// The z component of the edge's integral, (a x b) theta / sin(theta), for unit vectors.
+float ltc_plain_edge(vec3 a, vec3 b, float cosine) {
+    float _e4 = ltc_angle_over_sine(abs(cosine));
+    float obtuse = ((LTC_PI * inversesqrt(max((1.0 - (cosine * cosine)), 0.01))) - _e4);
+    return (((a.x * b.y) - (a.y * b.x)) * ((cosine < 0.0) ? obtuse : _e4));
+}
+
+// The sum over the edges of a quad that the surface's horizon does not cut (Heitz et al. 2016, eq. 11).
+LtcPlain ltc_quad_plain(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
+    LtcPlain none = LtcPlain(0.0, false);
+    vec3 _e8 = ltc_cosine_from_target(lobe, v0);
+    vec3 _e9 = ltc_cosine_from_target(lobe, v1);
+    vec3 _e10 = ltc_cosine_from_target(lobe, v2);
+    vec3 _e11 = ltc_cosine_from_target(lobe, v3);
+    vec4 squares = vec4(dot(_e8, _e8), dot(_e9, _e9), dot(_e10, _e10), dot(_e11, _e11));
+    if (!((min(min(squares.x, squares.y), min(squares.z, squares.w)) > 1e-30))) {
+        return none;
     }
-    float _e37 = sum;
-    return _e37;
+    vec4 shrink = inversesqrt(squares);
+    vec3 a = (_e8 * shrink.x);
+    vec3 b = (_e9 * shrink.y);
+    vec3 c = (_e10 * shrink.z);
+    vec3 d = (_e11 * shrink.w);
+    float ab = dot(a, b);
+    float bc = dot(b, c);
+    float cd = dot(c, d);
+    float da = dot(d, a);
+    if ((min(min(ab, bc), min(cd, da)) < LTC_PLAIN_COSINE)) {
+        return none;
+    }
+    float _e45 = ltc_plain_edge(a, b, ab);
+    float _e46 = ltc_plain_edge(b, c, bc);
+    float _e48 = ltc_plain_edge(c, d, cd);
+    float _e50 = ltc_plain_edge(d, a, da);
+    float sum = (((_e45 + _e46) + _e48) + _e50);
+    return LtcPlain(sum, true);
 }
 
 // The fraction of the lobe that sees the quad, in [0, 1]; corners counter-clockwise seen from the emitting side, relative to
@@ -386,7 +379,11 @@ float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     vec3 b = vec3(0.0);
     vec3 c = vec3(0.0);
     vec3 d = vec3(0.0);
-    float sum = 0.0;
+    bool local_3 = false;
+    bool local_4 = false;
+    bool local_5 = false;
+    LtcBoundary boundary = LtcBoundary(LtcCorner(vec3(0.0), vec3(0.0)), LtcCorner(vec3(0.0), vec3(0.0)), false, 0.0);
+    int i = 0;
     float _e6 = ltc_largest_component(v0);
     float _e7 = ltc_largest_component(v1);
     float _e9 = ltc_largest_component(v2);
@@ -405,26 +402,85 @@ float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     b = (v1 / vec3(scale));
     c = (v2 / vec3(scale));
     d = (v3 / vec3(scale));
-    vec3 _e34 = c;
-    vec3 _e35 = a;
-    vec3 _e37 = d;
-    vec3 _e38 = b;
-    vec3 _e40 = ltc_cross((_e34 - _e35), (_e37 - _e38));
-    vec3 _e41 = a;
-    float _e43 = ltc_facing(_e40, _e41, 1.0);
-    bool _e44 = ltc_emits_towards(_e43, false);
-    if (!(_e44)) {
+    vec3 _e35 = c;
+    vec3 _e36 = a;
+    vec3 _e38 = d;
+    vec3 _e39 = b;
+    vec3 area = cross((_e35 - _e36), (_e38 - _e39));
+    vec3 _e42 = a;
+    float height = dot(area, _e42);
+    float size = dot(area, area);
+    if (true) {
+        local_3 = (size > 1e-6);
+    } else {
+        local_3 = false;
+    }
+    bool _e50 = local_3;
+    if (_e50) {
+        local_4 = ((height * height) > (1e-6 * size));
+    } else {
+        local_4 = false;
+    }
+    bool _e58 = local_4;
+    if (_e58) {
+        if ((height > 0.0)) {
+            local_5 = true;
+        } else {
+            local_5 = false;
+        }
+        bool _e65 = local_5;
+        if (_e65) {
+            return 0.0;
+        }
+        vec3 _e67 = a;
+        vec3 _e68 = b;
+        vec3 _e69 = c;
+        vec3 _e70 = d;
+        LtcPlain _e71 = ltc_quad_plain(lobe, _e67, _e68, _e69, _e70);
+        if (_e71.holds) {
+            return clamp((((height < 0.0) ? -(_e71.sum) : _e71.sum) / 6.2831855), 0.0, 1.0);
+        }
+    }
+    vec3 _e84 = c;
+    vec3 _e85 = a;
+    vec3 _e87 = d;
+    vec3 _e88 = b;
+    vec3 _e90 = ltc_cross((_e84 - _e85), (_e87 - _e88));
+    vec3 _e91 = a;
+    float _e93 = ltc_facing(_e90, _e91, 1.0);
+    bool _e94 = ltc_emits_towards(_e93, false);
+    if (!(_e94)) {
         return 0.0;
     }
-    vec3 _e49 = a;
-    vec3 _e50 = b;
-    vec3 _e51 = c;
-    vec3 _e52 = d;
-    float _e53 = ltc_quad_above(lobe, _e49, _e50, _e51, _e52);
-    sum = _e53;
-    float _e54 = sum;
-    float _e55 = sum;
-    float _e60 = ltc_fraction_of_sum(((_e43 > 0.0) ? -(_e55) : _e54));
-    return clamp(_e60, 0.0, 1.0);
+    LtcBoundary _e97 = ltc_boundary();
+    boundary = _e97;
+    bool loop_init = true;
+    while(true) {
+        if (!loop_init) {
+            int _e110 = i;
+            i = (_e110 + 1);
+        }
+        loop_init = false;
+        int _e101 = i;
+        if ((_e101 < 4)) {
+        } else {
+            break;
+        }
+        {
+            vec3 _e104 = a;
+            ltc_boundary_push(boundary, lobe, _e104);
+            vec3 moved = a;
+            vec3 _e106 = b;
+            a = _e106;
+            vec3 _e107 = c;
+            b = _e107;
+            vec3 _e108 = d;
+            c = _e108;
+            d = moved;
+        }
+    }
+    float _e112 = ltc_boundary_finish(boundary, lobe);
+    float _e117 = ltc_fraction_of_sum(((_e93 > 0.0) ? -(_e112) : _e112));
+    return clamp(_e117, 0.0, 1.0);
 }
 

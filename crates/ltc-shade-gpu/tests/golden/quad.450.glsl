@@ -21,7 +21,7 @@
 // Four u32 or f32 each, an axis takes 16 bytes, LtcAxes 64 in the order theta, phi, alpha, lambda.
 //
 // Functions to call:
-//   LtcLookup ltc_lookup_isotropic(sampler2DArray texture_1, LtcAxes axes, vec3 wo, float alpha)
+//   LtcLookup ltc_lookup_isotropic(sampler2DArray texture_3, LtcAxes axes, vec3 wo, float alpha)
 //   vec3 ltc_reflectance(vec3 f0, float f90, float magnitude, float fresnel)
 //   LtcLobe ltc_lobe(mat3x3 target_from_cosine)
 //   LtcLobe ltc_cosine()
@@ -96,6 +96,10 @@ struct LtcBoundary {
     bool has_exit;
     float sum;
 };
+struct LtcPlain {
+    float sum;
+    bool holds;
+};
 const float LTC_PI = 3.1415927;
 const float LTC_TINY = 1e-37;
 const float LTC_ALPHA_MIN = 0.0001;
@@ -103,6 +107,7 @@ const uint LTC_LINEAR = 0u;
 const uint LTC_SQRT = 1u;
 const uint LTC_SQRT_ONE_MINUS_COS = 2u;
 const uint LTC_HALF_TANGENT = 3u;
+const float LTC_PLAIN_COSINE = -0.95;
 
 
 float ltc_largest_component(vec3 v) {
@@ -194,6 +199,10 @@ LtcPlace ltc_nearest(LtcPlace place) {
     return LtcPlace(place.cell, ((place.t > 0.5) ? 1.0 : 0.0));
 }
 
+uint ltc_nearest_node(LtcPlace place) {
+    return (place.cell + ((place.t > 0.5) ? 1u : 0u));
+}
+
 // Whether the matrix is a lobe's: det M > 0. Entries have it, but very thin lobes that lie askew to each other may
 // interpolate to a matrix without; the nearest entry answers then, as on the CPU.
 bool ltc_regular(LtcTexels texels) {
@@ -209,6 +218,13 @@ LtcTexels ltc_with_matrix(LtcTexels texels, LtcTexels other) {
 // The weight of the upper or lower node of a place.
 float ltc_weight(LtcPlace place, uint upper) {
     return ((upper == 1u) ? place.t : (1.0 - place.t));
+}
+
+// The weights of four neighbours: neither node upper, that of a, that of b, both.
+vec4 ltc_weights(LtcPlace a, LtcPlace b) {
+    vec2 low = (vec2((1.0 - a.t), a.t) * (1.0 - b.t));
+    vec2 high = (vec2((1.0 - a.t), a.t) * b.t);
+    return vec4(low, high);
 }
 
 // The place in texels, for a filtering fetch.
@@ -234,64 +250,52 @@ LtcLookup ltc_isotropic_decode(LtcTexels texels, vec3 wo) {
     return LtcLookup(m, texels.g2.y, texels.g2.z);
 }
 
-LtcTexels ltc_fetch_isotropic(sampler2DArray texture_, LtcIsotropicPlace place) {
-    LtcTexels sum = LtcTexels(vec4(0.0), vec4(0.0), vec4(0.0));
-    uint corner = 0u;
-    bool loop_init = true;
-    while(true) {
-        if (!loop_init) {
-            uint _e57 = corner;
-            corner = (_e57 + 1u);
-        }
-        loop_init = false;
-        uint _e12 = corner;
-        if ((_e12 < 4u)) {
-        } else {
-            break;
-        }
-        {
-            uint _e15 = corner;
-            uint _e18 = corner;
-            uvec2 upper = uvec2((_e15 & 1u), (_e18 >> 1u));
-            float _e24 = ltc_weight(place.alpha, upper.x);
-            float _e27 = ltc_weight(place.theta, upper.y);
-            float weight = (_e24 * _e27);
-            uvec2 at = (uvec2(place.alpha.cell, place.theta.cell) + upper);
-            vec4 _e36 = sum.g0;
-            vec4 _e39 = texelFetch(texture_, ivec3(at, 0), 0);
-            sum.g0 = (_e36 + (weight * _e39));
-            vec4 _e43 = sum.g1;
-            vec4 _e46 = texelFetch(texture_, ivec3(at, 1), 0);
-            sum.g1 = (_e43 + (weight * _e46));
-            vec4 _e50 = sum.g2;
-            vec4 _e53 = texelFetch(texture_, ivec3(at, 2), 0);
-            sum.g2 = (_e50 + (weight * _e53));
-        }
-    }
-    LtcTexels _e59 = sum;
-    return _e59;
+// Between four neighbours of one layer.
+vec4 ltc_fetch_four_isotropic(sampler2DArray texture_, uvec2 at, int layer, vec4 weights) {
+    vec4 _e6 = texelFetch(texture_, ivec3(at, layer), 0);
+    vec4 _e14 = texelFetch(texture_, ivec3((at + uvec2(1u, 0u)), layer), 0);
+    vec4 _e23 = texelFetch(texture_, ivec3((at + uvec2(0u, 1u)), layer), 0);
+    vec4 _e32 = texelFetch(texture_, ivec3((at + uvec2(1u, 1u)), layer), 0);
+    return ((((weights.x * _e6) + (weights.y * _e14)) + (weights.z * _e23)) + (weights.w * _e32));
+}
+
+LtcTexels ltc_fetch_isotropic(sampler2DArray texture_1, LtcIsotropicPlace place) {
+    uvec2 at = uvec2(place.alpha.cell, place.theta.cell);
+    vec4 _e9 = ltc_weights(place.alpha, place.theta);
+    vec4 _e11 = ltc_fetch_four_isotropic(texture_1, at, 0, _e9);
+    vec4 _e13 = ltc_fetch_four_isotropic(texture_1, at, 1, _e9);
+    vec4 _e15 = ltc_fetch_four_isotropic(texture_1, at, 2, _e9);
+    return LtcTexels(_e11, _e13, _e15);
+}
+
+// The nearest entry alone.
+LtcTexels ltc_fetch_nearest_isotropic(sampler2DArray texture_2, LtcIsotropicPlace place) {
+    uint _e3 = ltc_nearest_node(place.alpha);
+    uint _e5 = ltc_nearest_node(place.theta);
+    uvec2 at = uvec2(_e3, _e5);
+    vec4 _e9 = texelFetch(texture_2, ivec3(at, 0), 0);
+    vec4 _e12 = texelFetch(texture_2, ivec3(at, 1), 0);
+    vec4 _e15 = texelFetch(texture_2, ivec3(at, 2), 0);
+    return LtcTexels(_e9, _e12, _e15);
 }
 
 // The table's answer for the unit vector `wo`, in the shading frame.
-LtcLookup ltc_lookup_isotropic(sampler2DArray texture_1, LtcAxes axes, vec3 wo, float alpha) {
+LtcLookup ltc_lookup_isotropic(sampler2DArray texture_3, LtcAxes axes, vec3 wo, float alpha) {
     LtcTexels texels = LtcTexels(vec4(0.0), vec4(0.0), vec4(0.0));
     LtcIsotropicPlace _e4 = ltc_isotropic_place(axes, wo, alpha);
-    LtcTexels _e5 = ltc_fetch_isotropic(texture_1, _e4);
+    LtcTexels _e5 = ltc_fetch_isotropic(texture_3, _e4);
     texels = _e5;
     LtcTexels _e7 = texels;
     bool _e8 = ltc_regular(_e7);
     if (!(_e8)) {
-        LtcPlace _e11 = ltc_nearest(_e4.theta);
-        LtcPlace _e13 = ltc_nearest(_e4.alpha);
-        LtcIsotropicPlace nearest = LtcIsotropicPlace(_e11, _e13);
-        LtcTexels _e15 = texels;
-        LtcTexels _e16 = ltc_fetch_isotropic(texture_1, nearest);
-        LtcTexels _e17 = ltc_with_matrix(_e15, _e16);
-        texels = _e17;
+        LtcTexels _e10 = texels;
+        LtcTexels _e11 = ltc_fetch_nearest_isotropic(texture_3, _e4);
+        LtcTexels _e12 = ltc_with_matrix(_e10, _e11);
+        texels = _e12;
     }
-    LtcTexels _e18 = texels;
-    LtcLookup _e19 = ltc_isotropic_decode(_e18, wo);
-    return _e19;
+    LtcTexels _e13 = texels;
+    LtcLookup _e14 = ltc_isotropic_decode(_e13, wo);
+    return _e14;
 }
 
 // Directional reflectance F0 * n + (F90 - F0) * f, with n = integral of rho cos at F = 1 and f the same weighted by
@@ -409,6 +413,11 @@ float ltc_everywhere(LtcLobe lobe) {
 float ltc_edge_angle(float sine, float cosine) {
     float _e2 = ltc_atan2(sine, cosine);
     return _e2;
+}
+
+// theta / sin(theta) from its cosine, in [0, 1]: relative error 2e-8 before rounding.
+float ltc_angle_over_sine(float cosine) {
+    return (((((0.18455717 * cosine) + 1.330676) * cosine) + 1.5707963) / ((((((0.040163346 * cosine) + 0.5621138) * cosine) + 1.4837523) * cosine) + 1.0));
 }
 
 LtcBoundary ltc_boundary() {
@@ -623,71 +632,180 @@ float ltc_facing(vec3 normal, vec3 point, float reach) {
     return ((abs(facing) > ((9.536743e-7 * reach) * length(normal))) ? facing : 0.0);
 }
 
-// The boundary sum of a quad that the surface's horizon does not cut.
-float ltc_quad_above(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
+// The z component of the edge's integral, (a x b) theta / sin(theta), for unit vectors.
+float ltc_plain_edge(vec3 a, vec3 b, float cosine) {
+    float _e4 = ltc_angle_over_sine(abs(cosine));
+    float obtuse = ((LTC_PI * inversesqrt(max((1.0 - (cosine * cosine)), 0.01))) - _e4);
+    return (((a.x * b.y) - (a.y * b.x)) * ((cosine < 0.0) ? obtuse : _e4));
+}
+
+// The same of what is above the horizon of cosine space, of a quad that it cuts or hides.
+LtcPlain ltc_quad_plain_cut(vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     vec3 a = vec3(0.0);
     vec3 b = vec3(0.0);
     vec3 c = vec3(0.0);
     vec3 d = vec3(0.0);
+    bool local_4 = false;
+    bool local_5 = false;
     float sum = 0.0;
-    vec3 begin = vec3(0.0);
+    vec3 exit = vec3(0.0);
+    vec3 entry = vec3(0.0);
     int i = 0;
+    bool local_6 = false;
+    vec3 begin = vec3(0.0);
+    vec3 end = vec3(0.0);
     a = v0;
     b = v1;
     c = v2;
     d = v3;
-    vec3 _e11 = a;
-    vec3 _e12 = ltc_cosine_from_target(lobe, _e11);
-    begin = _e12;
-    bool loop_init_1 = true;
+    float _e9 = a.z;
+    float _e13 = b.z;
+    if (((_e9 >= 0.0) != (_e13 >= 0.0))) {
+        float _e20 = b.z;
+        float _e24 = c.z;
+        local_4 = ((_e20 >= 0.0) != (_e24 >= 0.0));
+    } else {
+        local_4 = false;
+    }
+    bool _e29 = local_4;
+    if (_e29) {
+        float _e33 = c.z;
+        float _e37 = d.z;
+        local_5 = ((_e33 >= 0.0) != (_e37 >= 0.0));
+    } else {
+        local_5 = false;
+    }
+    bool crossed = local_5;
+    if (crossed) {
+        return LtcPlain(0.0, false);
+    }
+    float _e47 = a.z;
+    float _e49 = b.z;
+    float _e52 = c.z;
+    float _e54 = d.z;
+    if ((max(max(_e47, _e49), max(_e52, _e54)) < 0.0)) {
+        return LtcPlain(0.0, true);
+    }
+    bool loop_init = true;
     while(true) {
-        if (!loop_init_1) {
-            int _e35 = i;
-            i = (_e35 + 1);
+        if (!loop_init) {
+            int _e129 = i;
+            i = (_e129 + 1);
         }
-        loop_init_1 = false;
-        int _e16 = i;
-        if ((_e16 < 4)) {
+        loop_init = false;
+        int _e72 = i;
+        if ((_e72 < 4)) {
         } else {
             break;
         }
         {
-            vec3 _e19 = b;
-            vec3 _e20 = ltc_cosine_from_target(lobe, _e19);
-            float _e21 = sum;
-            vec3 _e22 = begin;
-            vec3 _e23 = a;
-            vec3 _e24 = b;
-            vec3 _e25 = ltc_cross(_e23, _e24);
-            vec3 _e26 = ltc_cosine_normal(lobe, _e25);
-            float _e28 = ltc_arc(_e22, _e20, _e26, lobe.area_scale);
-            sum = (_e21 + _e28);
-            begin = _e20;
+            float _e76 = a.z;
+            bool a_above = (_e76 >= 0.0);
+            float _e80 = b.z;
+            bool b_above = (_e80 >= 0.0);
+            if (!(a_above)) {
+                local_6 = b_above;
+            } else {
+                local_6 = true;
+            }
+            bool _e87 = local_6;
+            if (_e87) {
+                vec3 _e88 = a;
+                begin = _e88;
+                vec3 _e90 = b;
+                end = _e90;
+                if ((a_above != b_above)) {
+                    vec3 _e93 = a;
+                    vec3 _e95 = b;
+                    float _e98 = a.z;
+                    float _e101 = a.z;
+                    float _e104 = b.z;
+                    vec2 chord = mix(_e93.xy, _e95.xy, (abs(_e98) / (abs(_e101) + abs(_e104))));
+                    vec3 cut = vec3((chord * inversesqrt(max(dot(chord, chord), 0.01))), 0.0);
+                    if (a_above) {
+                        end = cut;
+                        exit = cut;
+                    } else {
+                        begin = cut;
+                        entry = cut;
+                    }
+                }
+                float _e116 = sum;
+                vec3 _e117 = begin;
+                vec3 _e118 = end;
+                vec3 _e119 = begin;
+                vec3 _e120 = end;
+                float _e122 = ltc_plain_edge(_e117, _e118, dot(_e119, _e120));
+                sum = (_e116 + _e122);
+            }
             vec3 moved = a;
-            vec3 _e31 = b;
-            a = _e31;
-            vec3 _e32 = c;
-            b = _e32;
-            vec3 _e33 = d;
-            c = _e33;
+            vec3 _e125 = b;
+            a = _e125;
+            vec3 _e126 = c;
+            b = _e126;
+            vec3 _e127 = d;
+            c = _e127;
             d = moved;
         }
     }
-    float _e37 = sum;
-    return _e37;
+    vec3 _e131 = exit;
+    vec3 _e132 = entry;
+    float closing = dot(_e131, _e132);
+    float _e134 = sum;
+    vec3 _e135 = exit;
+    vec3 _e136 = entry;
+    float _e137 = ltc_plain_edge(_e135, _e136, closing);
+    return LtcPlain((_e134 + _e137), (closing >= LTC_PLAIN_COSINE));
+}
+
+// The sum over the edges of a quad that the surface's horizon does not cut (Heitz et al. 2016, eq. 11).
+LtcPlain ltc_quad_plain(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
+    LtcPlain none = LtcPlain(0.0, false);
+    vec3 _e8 = ltc_cosine_from_target(lobe, v0);
+    vec3 _e9 = ltc_cosine_from_target(lobe, v1);
+    vec3 _e10 = ltc_cosine_from_target(lobe, v2);
+    vec3 _e11 = ltc_cosine_from_target(lobe, v3);
+    vec4 squares = vec4(dot(_e8, _e8), dot(_e9, _e9), dot(_e10, _e10), dot(_e11, _e11));
+    if (!((min(min(squares.x, squares.y), min(squares.z, squares.w)) > 1e-30))) {
+        return none;
+    }
+    vec4 shrink = inversesqrt(squares);
+    vec3 a = (_e8 * shrink.x);
+    vec3 b = (_e9 * shrink.y);
+    vec3 c = (_e10 * shrink.z);
+    vec3 d = (_e11 * shrink.w);
+    float ab = dot(a, b);
+    float bc = dot(b, c);
+    float cd = dot(c, d);
+    float da = dot(d, a);
+    if ((min(min(ab, bc), min(cd, da)) < LTC_PLAIN_COSINE)) {
+        return none;
+    }
+    if ((min(min(a.z, b.z), min(c.z, d.z)) < 0.0)) {
+        LtcPlain _e54 = ltc_quad_plain_cut(a, b, c, d);
+        return _e54;
+    }
+    float _e55 = ltc_plain_edge(a, b, ab);
+    float _e56 = ltc_plain_edge(b, c, bc);
+    float _e58 = ltc_plain_edge(c, d, cd);
+    float _e60 = ltc_plain_edge(d, a, da);
+    float sum = (((_e55 + _e56) + _e58) + _e60);
+    return LtcPlain(sum, true);
 }
 
 // The fraction of the lobe that sees the quad, in [0, 1]; corners counter-clockwise seen from the emitting side, relative to
 // the shading point in the shading frame. Zero for a degenerate quad, for a shading point in its plane, and behind a
 // one-sided one.
 float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
-    bool local_4 = false;
-    bool local_5 = false;
+    bool local_7 = false;
+    bool local_8 = false;
     vec3 a = vec3(0.0);
     vec3 b = vec3(0.0);
     vec3 c = vec3(0.0);
     vec3 d = vec3(0.0);
-    float sum = 0.0;
+    bool local_9 = false;
+    bool local_10 = false;
+    bool local_11 = false;
     LtcBoundary boundary = LtcBoundary(LtcCorner(vec3(0.0), vec3(0.0)), LtcCorner(vec3(0.0), vec3(0.0)), false, LtcCorner(vec3(0.0), vec3(0.0)), LtcCorner(vec3(0.0), vec3(0.0)), false, false, 0.0);
     int i = 0;
     float _e6 = ltc_largest_component(v0);
@@ -699,16 +817,16 @@ float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     bool sunk = (max(max(v0.z, v1.z), max(v2.z, v3.z)) <= 0.0);
     if (!(sunk)) {
         if ((scale > LTC_TINY)) {
-            local_5 = lobe.valid;
+            local_8 = lobe.valid;
         } else {
-            local_5 = false;
+            local_8 = false;
         }
-        bool _e38 = local_5;
-        local_4 = !(_e38);
+        bool _e38 = local_8;
+        local_7 = !(_e38);
     } else {
-        local_4 = true;
+        local_7 = true;
     }
-    bool _e41 = local_4;
+    bool _e41 = local_7;
     if (_e41) {
         return 0.0;
     }
@@ -716,58 +834,86 @@ float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     b = (v1 / vec3(scale));
     c = (v2 / vec3(scale));
     d = (v3 / vec3(scale));
-    vec3 _e55 = c;
-    vec3 _e56 = a;
-    vec3 _e58 = d;
-    vec3 _e59 = b;
-    vec3 _e61 = ltc_cross((_e55 - _e56), (_e58 - _e59));
-    vec3 _e62 = a;
-    float _e64 = ltc_facing(_e61, _e62, 1.0);
-    bool _e65 = ltc_emits_towards(_e64, false);
-    if (!(_e65)) {
+    bool whole = (lowest >= 0.0);
+    vec3 _e57 = c;
+    vec3 _e58 = a;
+    vec3 _e60 = d;
+    vec3 _e61 = b;
+    vec3 area = cross((_e57 - _e58), (_e60 - _e61));
+    vec3 _e64 = a;
+    float height = dot(area, _e64);
+    float size = dot(area, area);
+    if (whole) {
+        local_9 = (size > 1e-6);
+    } else {
+        local_9 = false;
+    }
+    bool _e72 = local_9;
+    if (_e72) {
+        local_10 = ((height * height) > (1e-6 * size));
+    } else {
+        local_10 = false;
+    }
+    bool _e80 = local_10;
+    if (_e80) {
+        if ((height > 0.0)) {
+            local_11 = true;
+        } else {
+            local_11 = false;
+        }
+        bool _e87 = local_11;
+        if (_e87) {
+            return 0.0;
+        }
+        vec3 _e89 = a;
+        vec3 _e90 = b;
+        vec3 _e91 = c;
+        vec3 _e92 = d;
+        LtcPlain _e93 = ltc_quad_plain(lobe, _e89, _e90, _e91, _e92);
+        if (_e93.holds) {
+            return clamp((((height < 0.0) ? -(_e93.sum) : _e93.sum) / 6.2831855), 0.0, 1.0);
+        }
+    }
+    vec3 _e106 = c;
+    vec3 _e107 = a;
+    vec3 _e109 = d;
+    vec3 _e110 = b;
+    vec3 _e112 = ltc_cross((_e106 - _e107), (_e109 - _e110));
+    vec3 _e113 = a;
+    float _e115 = ltc_facing(_e112, _e113, 1.0);
+    bool _e116 = ltc_emits_towards(_e115, false);
+    if (!(_e116)) {
         return 0.0;
     }
-    if ((lowest < 0.0)) {
-        LtcBoundary _e72 = ltc_boundary();
-        boundary = _e72;
-        bool loop_init_2 = true;
-        while(true) {
-            if (!loop_init_2) {
-                int _e85 = i;
-                i = (_e85 + 1);
-            }
-            loop_init_2 = false;
-            int _e76 = i;
-            if ((_e76 < 4)) {
-            } else {
-                break;
-            }
-            {
-                vec3 _e79 = a;
-                ltc_boundary_push(boundary, lobe, _e79);
-                vec3 moved = a;
-                vec3 _e81 = b;
-                a = _e81;
-                vec3 _e82 = c;
-                b = _e82;
-                vec3 _e83 = d;
-                c = _e83;
-                d = moved;
-            }
+    LtcBoundary _e119 = ltc_boundary();
+    boundary = _e119;
+    bool loop_init_1 = true;
+    while(true) {
+        if (!loop_init_1) {
+            int _e132 = i;
+            i = (_e132 + 1);
         }
-        float _e87 = ltc_boundary_finish(boundary, lobe);
-        sum = _e87;
-    } else {
-        vec3 _e88 = a;
-        vec3 _e89 = b;
-        vec3 _e90 = c;
-        vec3 _e91 = d;
-        float _e92 = ltc_quad_above(lobe, _e88, _e89, _e90, _e91);
-        sum = _e92;
+        loop_init_1 = false;
+        int _e123 = i;
+        if ((_e123 < 4)) {
+        } else {
+            break;
+        }
+        {
+            vec3 _e126 = a;
+            ltc_boundary_push(boundary, lobe, _e126);
+            vec3 moved = a;
+            vec3 _e128 = b;
+            a = _e128;
+            vec3 _e129 = c;
+            b = _e129;
+            vec3 _e130 = d;
+            c = _e130;
+            d = moved;
+        }
     }
-    float _e93 = sum;
-    float _e94 = sum;
-    float _e99 = ltc_fraction_of_sum(((_e64 > 0.0) ? -(_e94) : _e93));
-    return clamp(_e99, 0.0, 1.0);
+    float _e134 = ltc_boundary_finish(boundary, lobe);
+    float _e139 = ltc_fraction_of_sum(((_e115 > 0.0) ? -(_e134) : _e134));
+    return clamp(_e139, 0.0, 1.0);
 }
 

@@ -188,6 +188,11 @@ fn ltc_everywhere(lobe: LtcLobe) -> f32 {
 
 // The angle of an edge by a rational function: `ltc_core::Rational`, without an arc tangent. No bindings. Needs: math.
 
+// theta / sin(theta) from its cosine, in [0, 1].
+fn ltc_angle_over_sine(x: f32) -> f32 {
+    return ((0.026367364 * x + 0.90948718) * x + 1.5707957) / ((0.29106499 * x + 1.2155835) * x + 1.0);
+}
+
 // The angle whose sine and cosine these are, up to one factor; sine >= 0. Relative error 7e-7 up to a right angle; beyond, by
 // pi - f(-cosine), so that edges near pi keep their value.
 fn ltc_edge_angle(sine: f32, cosine: f32) -> f32 {
@@ -195,9 +200,7 @@ fn ltc_edge_angle(sine: f32, cosine: f32) -> f32 {
     if !(length > LTC_TINY) {
         return 0.0;
     }
-    let x = abs(cosine) / length;
-    let over_sine = ((0.026367364 * x + 0.90948718) * x + 1.5707957) / ((0.29106499 * x + 1.2155835) * x + 1.0);
-    let acute = over_sine * (sine / length);
+    let acute = ltc_angle_over_sine(abs(cosine) / length) * (sine / length);
     return select(acute, LTC_PI - acute, cosine < 0.0);
 }
 
@@ -308,8 +311,9 @@ fn ltc_facing(normal: vec3f, point: vec3f, reach: f32) -> f32 {
 
 // Flat lights of four corners. No bindings. Needs: math, precise, lobe, boundary, facing.
 //
-// Whether a horizon cuts is asked of all corners at once: a quad above both pays four comparisons each and one angle an
-// edge; one below is left at once; only what the surface's horizon cuts goes through the streaming clip.
+// Nearly every quad on a screen is plain: above the surface's horizon, not seen edge-on, not tiny, no edge near half a turn. For
+// those, unit vectors and a rational function are as exact as f32 is. All others, and what the surface's horizon cuts, go the
+// way that holds everywhere: products whose leading digits cancel are split, and the clip streams.
 
 // The fraction of the lobe that sees the quad, in [0, 1]; corners counter-clockwise seen from the emitting side, relative to
 // the shading point in the shading frame. Zero for a degenerate quad, for a shading point in its plane, and behind a
@@ -333,33 +337,80 @@ fn ltc_quad(
     var b = v1 / scale;
     var c = v2 / scale;
     var d = v3 / scale;
+    const whole = true;
+    // Far beyond where rounding could change the side or the sum.
+    let area = cross(c - a, d - b);
+    let height = dot(area, a);
+    let size = dot(area, area);
+    if whole && size > 1e-6 && height * height > 1e-6 * size {
+        if height > 0.0 && !two_sided {
+            return 0.0;
+        }
+        let plain = ltc_quad_plain(lobe, a, b, c, d);
+        if plain.holds {
+            return clamp(select(plain.sum, -plain.sum, height < 0.0) / (2.0 * LTC_PI), 0.0, 1.0);
+        }
+    }
     // The two terms of Newell's sum in one: the cross product of the diagonals.
     let facing = ltc_facing(ltc_cross(c - a, d - b), a, 1.0);
     if !ltc_emits_towards(facing, two_sided) {
         return 0.0;
     }
-    var sum = 0.0;
-    sum = ltc_quad_above(lobe, a, b, c, d);
-    return clamp(ltc_fraction_of_sum(select(sum, -sum, facing > 0.0)), 0.0, 1.0);
-}
-
-// The boundary sum of a quad that the surface's horizon does not cut.
-fn ltc_quad_above(lobe: LtcLobe, v0: vec3f, v1: vec3f, v2: vec3f, v3: vec3f) -> f32 {
-    var a = v0;
-    var b = v1;
-    var c = v2;
-    var d = v3;
-    var sum = 0.0;
-    var begin = ltc_cosine_from_target(lobe, a);
+    var boundary = ltc_boundary();
+    // The corners move through four registers, so that none is indexed and the edge's code stands here once.
     for (var i = 0; i < 4; i++) {
-        let to = ltc_cosine_from_target(lobe, b);
-        sum += ltc_arc(begin, to, ltc_cosine_normal(lobe, ltc_cross(a, b)), lobe.area_scale);
-        begin = to;
+        ltc_boundary_push(&boundary, lobe, a);
         let moved = a;
         a = b;
         b = c;
         c = d;
         d = moved;
     }
-    return sum;
+    let sum = ltc_boundary_finish(&boundary, lobe);
+    return clamp(ltc_fraction_of_sum(select(sum, -sum, facing > 0.0)), 0.0, 1.0);
 }
+
+struct LtcPlain {
+    // Up to the sign of the winding.
+    sum: f32,
+    // Whether it is as exact as the sum over a boundary.
+    holds: bool,
+}
+
+// Edges whose cosine is below this are left to the boundary sum.
+const LTC_PLAIN_COSINE: f32 = -0.95;
+
+// The z component of the edge's integral, (a x b) theta / sin(theta), for unit vectors.
+fn ltc_plain_edge(a: vec3f, b: vec3f, cosine: f32) -> f32 {
+    let acute = ltc_angle_over_sine(abs(cosine));
+    let obtuse = LTC_PI * inverseSqrt(max(1.0 - cosine * cosine, 0.01)) - acute;
+    return (a.x * b.y - a.y * b.x) * select(acute, obtuse, cosine < 0.0);
+}
+
+// The sum over the edges of a quad that the surface's horizon does not cut (Heitz et al. 2016, eq. 11).
+fn ltc_quad_plain(lobe: LtcLobe, v0: vec3f, v1: vec3f, v2: vec3f, v3: vec3f) -> LtcPlain {
+    let none = LtcPlain(0.0, false);
+    let p0 = ltc_cosine_from_target(lobe, v0);
+    let p1 = ltc_cosine_from_target(lobe, v1);
+    let p2 = ltc_cosine_from_target(lobe, v2);
+    let p3 = ltc_cosine_from_target(lobe, v3);
+    let squares = vec4f(dot(p0, p0), dot(p1, p1), dot(p2, p2), dot(p3, p3));
+    if !(min(min(squares.x, squares.y), min(squares.z, squares.w)) > 1e-30) {
+        return none;
+    }
+    let shrink = inverseSqrt(squares);
+    let a = p0 * shrink.x;
+    let b = p1 * shrink.y;
+    let c = p2 * shrink.z;
+    let d = p3 * shrink.w;
+    let ab = dot(a, b);
+    let bc = dot(b, c);
+    let cd = dot(c, d);
+    let da = dot(d, a);
+    if min(min(ab, bc), min(cd, da)) < LTC_PLAIN_COSINE {
+        return none;
+    }
+    let sum = ltc_plain_edge(a, b, ab) + ltc_plain_edge(b, c, bc) + ltc_plain_edge(c, d, cd) + ltc_plain_edge(d, a, da);
+    return LtcPlain(sum, true);
+}
+

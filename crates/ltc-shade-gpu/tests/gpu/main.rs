@@ -8,3 +8,4 @@ mod polygons;
 mod shading;
 mod support;
 mod tables;
+mod timing;

@@ -160,9 +160,14 @@ fn lights_below_the_horizon_add_exactly_nothing() {
     let Some(gpu) = gpu(Filtering::Exact) else { return };
     let mut rng = random(9);
     let lobes = matrices(4_000, &mut rng);
+    // Flat, the highest corner just below the horizon.
     let quads: Vec<Vec<[f32; 3]>> = lobes
         .iter()
-        .map(|_| (0..4).map(|_| [rng() - 0.5, rng() - 0.5, -rng() - 1e-6].map(|v| v as f32)).collect())
+        .map(|_| {
+            let corners = quad(&mut rng);
+            let highest = corners.iter().map(|[.., z]| *z).fold(f32::MIN, f32::max) + 1e-6 + rng() as f32;
+            corners.iter().map(|[x, y, z]| [*x, *y, *z - highest]).collect()
+        })
         .collect();
     let jobs: Vec<_> = lobes
         .iter()
