@@ -18,6 +18,7 @@
 //   1 for sqrt: u(x) = sqrt(x)
 //   2 for sqrt_one_minus_cos: u(x) = sqrt(1 - cos x)
 //   3 for half_tangent: u(x) = tan(x / 2)
+//   4 for grazing_half_tangent: u(x) = t / (2 - t), t = tan(x / 2)
 // Four u32 or f32 each, an axis takes 16 bytes, LtcAxes 64 in the order theta, phi, alpha, lambda.
 //
 // Functions to call:
@@ -107,6 +108,7 @@ const uint LTC_LINEAR = 0u;
 const uint LTC_SQRT = 1u;
 const uint LTC_SQRT_ONE_MINUS_COS = 2u;
 const uint LTC_HALF_TANGENT = 3u;
+const uint LTC_GRAZING_HALF_TANGENT = 4u;
 const float LTC_PLAIN_COSINE = -0.95;
 
 
@@ -163,7 +165,7 @@ LtcPlace ltc_place(LtcAxis axis, float coordinate) {
     return LtcPlace(uint(cell), (position - cell));
 }
 
-// For every quantity but theta; LTC_SQRT_ONE_MINUS_COS and LTC_HALF_TANGENT are for theta alone.
+// For every quantity but theta; the mappings by sine and cosine are for theta alone.
 LtcPlace ltc_place_of_value(LtcAxis axis, float value) {
     LtcPlace _e9 = ltc_place(axis, ((axis.mapping == LTC_SQRT) ? sqrt(max(value, 0.0)) : value));
     return _e9;
@@ -181,9 +183,14 @@ LtcPlace ltc_place_of_theta(LtcAxis axis, vec3 wo) {
         LtcPlace _e27 = ltc_place(axis, (sqrt(squared_sine) / (1.0 + cosine)));
         return _e27;
     }
-    float _e29 = ltc_atan2(sqrt(squared_sine), cosine);
-    LtcPlace _e30 = ltc_place_of_value(axis, _e29);
-    return _e30;
+    if ((axis.mapping == LTC_GRAZING_HALF_TANGENT)) {
+        float sine = sqrt(squared_sine);
+        LtcPlace _e38 = ltc_place(axis, (sine / ((2.0 + (2.0 * cosine)) - sine)));
+        return _e38;
+    }
+    float _e40 = ltc_atan2(sqrt(squared_sine), cosine);
+    LtcPlace _e41 = ltc_place_of_value(axis, _e40);
+    return _e41;
 }
 
 mat3x3 ltc_matrix(LtcTexels texels) {
