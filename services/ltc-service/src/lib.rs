@@ -42,6 +42,7 @@ mod json_table;
 mod metrics;
 mod openapi;
 mod params;
+mod patience;
 mod preconditions;
 mod problem;
 mod problem_types;
