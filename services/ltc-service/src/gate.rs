@@ -191,5 +191,5 @@ fn log(line: &Line, id: &RequestId, status: u16, microseconds: u64) {
 
 /// Whether a path needs a token where reading does. What tells nothing about tables never does.
 fn is_private(path: &str) -> bool {
-    path == "/" || path.starts_with("/v1/")
+    path == "/" || path == "/benchmarks" || path.starts_with("/v1/")
 }

@@ -37,6 +37,7 @@ mod error;
 mod etag;
 mod gate;
 mod headers;
+mod history;
 mod index;
 mod json_table;
 mod metrics;

@@ -38,7 +38,7 @@ fn check_name(name: &str) -> Result<(), ApiError> {
 }
 
 /// A time as the store takes it: RFC 3339 in UTC.
-fn check_time(field: &str, text: &str) -> Result<(), ApiError> {
+pub(super) fn check_time(field: &str, text: &str) -> Result<(), ApiError> {
     let read = humantime::parse_rfc3339(text);
     read.map(drop).map_err(|_| {
         ApiError::invalid(field, format!("is not a time in UTC such as 2026-01-31T12:00:00Z: {text:?}"))

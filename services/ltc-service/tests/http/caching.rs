@@ -8,6 +8,7 @@ use crate::support::*;
 /// Every kind of thing that is fetched.
 fn paths() -> Vec<String> {
     let mut paths = vec!["/".to_owned(), "/v1/tables".into(), "/v1/tables/ggx-isotropic".into()];
+    paths.push("/benchmarks".into());
     paths.push("/v1/tables/ggx-isotropic/versions".into());
     for rest in [
         "",
