@@ -104,6 +104,33 @@ impl Client {
         Self { agent, url: url.trim_end_matches('/').to_owned(), token: None, cache: None }
     }
 
+    /// Believes only services whose certificates one of these authorities has signed (PEM, one or more), as a company's own does.
+    /// Without this it is the authorities that Mozilla lists.
+    ///
+    /// # Errors
+    /// [`ClientError::NoAuthority`] where there is no certificate among them, or one that cannot be read.
+    #[cfg(feature = "tls")]
+    pub fn with_authorities(mut self, pem: &[u8]) -> Result<Self, ClientError> {
+        use ureq::tls::{PemItem, RootCerts, TlsConfig, parse_pem};
+
+        let mut authorities = Vec::new();
+        for item in parse_pem(pem) {
+            match item.map_err(|cause| ClientError::NoAuthority { reason: cause.to_string() })? {
+                PemItem::Certificate(certificate) => authorities.push(certificate),
+                _ => {
+                    let reason = "there is something else than certificates among them".to_owned();
+                    return Err(ClientError::NoAuthority { reason });
+                }
+            }
+        }
+        if authorities.is_empty() {
+            return Err(ClientError::NoAuthority { reason: "there is no certificate".to_owned() });
+        }
+        let tls = TlsConfig::builder().root_certs(RootCerts::new_with_certs(&authorities)).build();
+        self.agent = Agent::new_with_config(config().tls_config(tls).build());
+        Ok(self)
+    }
+
     /// With a token, `ltc_…`.
     #[must_use]
     pub fn with_token(mut self, token: &str) -> Self {
