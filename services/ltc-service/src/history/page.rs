@@ -213,7 +213,8 @@ fn worse(history: &History, chosen: &[&Measure], choice: &Choice, at: usize) -> 
         }));
     }
     if items.is_empty() {
-        return "<p>Nothing became worse in the newest run of any machine.</p>".to_owned();
+        return "<p>Nothing that is chosen here became worse in the newest run of any machine.</p>"
+            .to_owned();
     }
     let more = items.len().saturating_sub(LISTED);
     items.truncate(LISTED);
