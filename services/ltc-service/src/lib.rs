@@ -40,6 +40,7 @@ mod headers;
 mod history;
 mod index;
 mod json_table;
+mod memory;
 mod metrics;
 mod openapi;
 mod params;
@@ -65,6 +66,7 @@ mod uploaded;
 mod variant;
 
 pub use error::ApiError;
+pub use memory::share_heaps;
 pub use problem_types::ProblemType;
 pub use router::app;
 pub use serve::{ServeError, serve, serve_until};

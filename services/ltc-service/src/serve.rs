@@ -128,6 +128,7 @@ async fn chores(state: AppState) {
         }
         if round % 30 == 0 {
             state.rates().forget();
+            crate::memory::give_back();
         }
     }
 }
