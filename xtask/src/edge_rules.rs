@@ -33,6 +33,9 @@ pub const RULES: &[Rule] = &[
     // The shipped tables are data and its reader.
     Rule::OursOnly { from: "ltc-tables", allowed: &["ltc-table"] },
     Rule::Never { from: "ltc-tables", targets: &["wgpu", "axum", "tokio", "rayon"] },
+    // The service reads what benches wrote without compiling them.
+    Rule::OursOnly { from: "ltc-records", allowed: &[] },
+    Rule::Never { from: "ltc-service", targets: &["ltc-benches"] },
     // Lines are understood without a GPU, so that fuzzers build fast.
     Rule::OursOnly { from: "ltc-lines", allowed: &["ltc-core", "ltc-table"] },
     // Fitting runs on machines without a GPU, and in workers without a server.

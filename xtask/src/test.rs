@@ -18,7 +18,7 @@ struct Part {
 }
 
 /// In this order: set-up first, then what is quick to fail.
-const PARTS: [Part; 10] = [
+const PARTS: [Part; 11] = [
     Part {
         what: "set-up: a driver for the GPU tests, compilers for exported shaders",
         slow: false,
@@ -34,6 +34,7 @@ const PARTS: [Part; 10] = [
     Part { what: "lints: cargo clippy, warnings are errors", slow: false, work: lints },
     Part { what: "tests of all crates, GPU tests included", slow: false, work: tests },
     Part { what: "ten million lights made to break things: release", slow: true, work: adversarial },
+    Part { what: "the client by TLS: a feature that is off in all else", slow: true, work: client_by_tls },
     Part { what: "examples in the documentation: cargo test --doc", slow: true, work: doc_tests },
     Part { what: "documentation: cargo doc, warnings are errors", slow: true, work: documentation },
     Part { what: "outside readers: the scripts in tests/outside", slow: true, work: outside::run },
@@ -104,6 +105,10 @@ fn tests(workspace: &Workspace) -> Result<Outcome> {
 /// The same test runs on fewer lights among all others, unoptimised.
 fn adversarial(workspace: &Workspace) -> Result<Outcome> {
     cargo(workspace, &["test", "--release", "-p", "ltc-core", "--test", "adversarial"])
+}
+
+fn client_by_tls(workspace: &Workspace) -> Result<Outcome> {
+    cargo(workspace, &["test", "-p", "ltc-client", "--features", "tls", "--test", "tls"])
 }
 
 fn doc_tests(workspace: &Workspace) -> Result<Outcome> {

@@ -4,7 +4,6 @@
 //! [`page`] makes a page to look at of it, [`csv`], [`bencher`] and [`action`] feed what others draw dashboards with, and
 //! [`compare`] says what became slower or more wrong from one run to another.
 
-mod compare;
 mod error;
 mod exports;
 pub mod gpu;
@@ -14,19 +13,18 @@ mod machine;
 mod page;
 mod pictures;
 mod plot;
-mod record;
 mod tables;
 pub mod timer;
 
 use ltc_render::RenderTables;
 use ltc_table::Catalogue;
 
-pub use compare::{Change, Comparison, Thresholds, Verdict, compare};
 pub use error::StudyError;
 pub use exports::{action, bencher, csv};
-pub use machine::Machine;
+pub use ltc_records::{
+    Change, Comparison, Interval, Machine, Record, Run, SCHEMA, Thresholds, Verdict, YARDSTICK, compare,
+};
 pub use page::page;
-pub use record::{Interval, Record, Run, SCHEMA, YARDSTICK};
 use timer::{Rounds, Task};
 
 /// What to measure.
@@ -58,7 +56,7 @@ const STAGES: usize = 4;
 /// [`StudyError`]: a form worse than it may be, a table that is missing, a picture that cannot be made.
 pub fn run(plan: &Plan, catalogue: &Catalogue, observe: &dyn Fn(Step<'_>)) -> Result<Run, StudyError> {
     let step = |done: usize, stage: &str| observe(Step { stage, done, total: STAGES });
-    let mut machine = Machine::here();
+    let mut machine = machine::here();
     let mut records = Vec::new();
     let versions: Vec<_> = catalogue.names().filter_map(|name| catalogue.find(name).ok()).collect();
     step(0, "tables");

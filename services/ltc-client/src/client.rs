@@ -8,7 +8,9 @@ use ltc_table::digest::{digest, is_digest};
 use ltc_table::{Lookup, Manifest, Query, TableVersion};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use ureq::config::ConfigBuilder;
 use ureq::http::Response;
+use ureq::typestate::AgentScope;
 use ureq::{Agent, Body};
 
 use crate::{Cache, ClientError};
@@ -68,6 +70,18 @@ struct Tables {
     tables: Vec<TableSummary>,
 }
 
+#[derive(Serialize)]
+struct Benchmark<'a, T> {
+    name: &'a str,
+    at: &'a str,
+    run: &'a T,
+}
+
+#[derive(Deserialize)]
+struct Kept {
+    id: u64,
+}
+
 #[derive(Deserialize)]
 struct Problem {
     #[serde(default)]
@@ -86,9 +100,35 @@ enum Answer {
 impl Client {
     /// A client of the service at a URL, such as `http://127.0.0.1:8787`.
     pub fn new(url: &str) -> Self {
-        let config = Agent::config_builder().http_status_as_error(false).timeout_global(Some(PATIENCE));
-        let agent = Agent::new_with_config(config.build());
+        let agent = Agent::new_with_config(config().build());
         Self { agent, url: url.trim_end_matches('/').to_owned(), token: None, cache: None }
+    }
+
+    /// Believes only services whose certificates one of these authorities has signed (PEM, one or more), as a company's own does.
+    /// Without this it is the authorities that Mozilla lists.
+    ///
+    /// # Errors
+    /// [`ClientError::NoAuthority`] where there is no certificate among them, or one that cannot be read.
+    #[cfg(feature = "tls")]
+    pub fn with_authorities(mut self, pem: &[u8]) -> Result<Self, ClientError> {
+        use ureq::tls::{PemItem, RootCerts, TlsConfig, parse_pem};
+
+        let mut authorities = Vec::new();
+        for item in parse_pem(pem) {
+            match item.map_err(|cause| ClientError::NoAuthority { reason: cause.to_string() })? {
+                PemItem::Certificate(certificate) => authorities.push(certificate),
+                _ => {
+                    let reason = "there is something else than certificates among them".to_owned();
+                    return Err(ClientError::NoAuthority { reason });
+                }
+            }
+        }
+        if authorities.is_empty() {
+            return Err(ClientError::NoAuthority { reason: "there is no certificate".to_owned() });
+        }
+        let tls = TlsConfig::builder().root_certs(RootCerts::new_with_certs(&authorities)).build();
+        self.agent = Agent::new_with_config(config().tls_config(tls).build());
+        Ok(self)
     }
 
     /// With a token, `ltc_…`.
@@ -201,6 +241,17 @@ impl Client {
             .collect())
     }
 
+    /// Posts a benchmark run to a series; gives the id under which it is kept. `at` is when it ran, RFC 3339 in UTC. Needs a token
+    /// with the scope `benchmark`.
+    ///
+    /// # Errors
+    /// [`ClientError`].
+    pub fn add_benchmark(&self, series: &str, at: &str, run: &impl Serialize) -> Result<u64, ClientError> {
+        let body = Benchmark { name: series, at, run };
+        let (url, body) = self.post("/v1/benchmarks", &[], &body)?;
+        Ok(read::<Kept>(&url, &body)?.id)
+    }
+
     /// URL and body of a GET.
     pub(crate) fn get(&self, path: &str) -> Result<(String, Vec<u8>), ClientError> {
         let url = format!("{}{path}", self.url);
@@ -228,6 +279,11 @@ impl Client {
         }
         taken(url, request.send_json(body))
     }
+}
+
+/// How requests are made.
+fn config() -> ConfigBuilder<AgentScope> {
+    Agent::config_builder().http_status_as_error(false).timeout_global(Some(PATIENCE))
 }
 
 /// Reads JSON.

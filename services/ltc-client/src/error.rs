@@ -47,6 +47,12 @@ pub enum ClientError {
     /// A name or version that could not stand in a path.
     #[error("{0:?} is no name, number, digest or alias")]
     BadName(String),
+    /// The authorities to believe cannot be read.
+    #[error("the certificates of authorities: {reason}")]
+    NoAuthority {
+        /// Why.
+        reason: String,
+    },
     /// A table cannot be read.
     #[error(transparent)]
     Table(#[from] TableError),

@@ -14,7 +14,8 @@
 //! ```
 //!
 //! Calls block. What comes back is never taken on trust: a payload must have the digest of its manifest, a manifest fetched by
-//! digest must name it. With the feature `tls` URLs may begin with `https`.
+//! digest must name it. With the feature `tls` URLs may begin with `https`, and
+//! `Client::with_authorities` says whose certificates count.
 
 mod cache;
 mod client;

@@ -10,8 +10,13 @@ use ltc_store::{EmbeddedStore, Scope, Secret};
 
 type Failure = Box<dyn std::error::Error>;
 
-#[tokio::main]
-async fn main() -> Result<(), Failure> {
+fn main() -> Result<(), Failure> {
+    // As `ltc serve` does.
+    ltc_service::share_heaps();
+    tokio::runtime::Runtime::new()?.block_on(serve())
+}
+
+async fn serve() -> Result<(), Failure> {
     let layers = Layers { environment: std::env::vars().collect(), ..Layers::default() };
     let settings = layers.resolve()?;
     tracing_subscriber::fmt().with_env_filter(&settings.log).with_writer(std::io::stderr).init();

@@ -45,8 +45,8 @@ impl Gate {
     pub(crate) async fn answer(&self, request: Request, peer: Option<IpAddr>) -> Response {
         let start = Instant::now();
         let id = RequestId::of(request.headers());
-        if let Some(response) = self.answer_again(&request, &id, peer, start) {
-            return response;
+        if let Some((response, route)) = self.answer_again(&request, peer) {
+            return self.finish_again(response, route, id, &request, start);
         }
         let line = Line { method: request.method().clone(), path: request.uri().path().to_owned(), start };
         let (response, route) = if headers::is_preflight(&request) {
@@ -59,29 +59,35 @@ impl Gate {
 
     /// The short way of what is asked for all day: an answer that was given before, to somebody without a token, where none is
     /// needed. Nothing is built but the list of its headers.
-    fn answer_again(
-        &self,
-        request: &Request,
-        id: &RequestId,
-        peer: Option<IpAddr>,
-        start: Instant,
-    ) -> Option<Response> {
+    fn answer_again(&self, request: &Request, peer: Option<IpAddr>) -> Option<(Response, RouteLabel)> {
         if self.state.settings().read != Access::Open || is_presented(request.headers()) {
             return None;
         }
-        let (mut response, route) = self.state.answers().find(request, self.state.revision())?;
+        let known = self.state.answers().find(request, self.state.revision())?;
         // A client that asks too often is counted, and told so, on the long way.
         self.state.rates().read(|| Client::of_address(peer)).ok()?;
+        Some(known)
+    }
+
+    /// What is left to do for such an answer.
+    fn finish_again(
+        &self,
+        mut response: Response,
+        route: RouteLabel,
+        id: RequestId,
+        request: &Request,
+        start: Instant,
+    ) -> Response {
         self.state.metrics().answer_hits.add(1);
-        response.headers_mut().insert(X_REQUEST_ID, id.header());
         let (status, time) = (response.status().as_u16(), start.elapsed());
         self.state.metrics().answered(route, status, time);
         if tracing::enabled!(tracing::Level::DEBUG) {
             let line =
                 Line { method: request.method().clone(), path: request.uri().path().to_owned(), start };
-            log(&line, id, status, time.as_micros() as u64);
+            log(&line, &id, status, time.as_micros() as u64);
         }
-        Some(response)
+        response.headers_mut().insert(X_REQUEST_ID, id.into_header());
+        response
     }
 
     async fn admit(&self, mut request: Request, peer: Option<IpAddr>) -> (Response, RouteLabel) {
@@ -160,10 +166,11 @@ impl Gate {
 
     fn finish(&self, response: Response, route: RouteLabel, id: &RequestId, line: &Line) -> Response {
         let mut response = problem::render(response, &line.path, id);
+        let status = response.status();
         let headers = response.headers_mut();
-        headers::add(headers);
+        headers::add(headers, status);
         headers.insert(X_REQUEST_ID, id.header());
-        let (status, time) = (response.status(), line.start.elapsed());
+        let time = line.start.elapsed();
         self.state.metrics().answered(route, status.as_u16(), time);
         log(line, id, status.as_u16(), time.as_micros() as u64);
         response
@@ -184,5 +191,5 @@ fn log(line: &Line, id: &RequestId, status: u16, microseconds: u64) {
 
 /// Whether a path needs a token where reading does. What tells nothing about tables never does.
 fn is_private(path: &str) -> bool {
-    path == "/" || path.starts_with("/v1/")
+    path == "/" || path == "/benchmarks" || path.starts_with("/v1/")
 }

@@ -12,7 +12,20 @@ const EXPOSED: HeaderValue = HeaderValue::from_static(
 
 /// Any origin may read: browsers send no credentials of their own here, so there is nothing to steal. A page that was given a
 /// token may send it.
-pub(crate) fn add(headers: &mut HeaderMap) {
+///
+/// Of a 304 what RFC 9110, section 15.4.5, asks for is left, and what makes a browser take it. The rest is in the answer that the client
+/// has, and would be most of what is sent.
+pub(crate) fn add(headers: &mut HeaderMap, status: StatusCode) {
+    if status == StatusCode::NOT_MODIFIED {
+        let all = std::mem::replace(headers, HeaderMap::with_capacity(8));
+        for name in [header::ETAG, header::CACHE_CONTROL, header::VARY] {
+            if let Some(value) = all.get(&name) {
+                headers.insert(name, value.clone());
+            }
+        }
+        headers.insert(header::ACCESS_CONTROL_ALLOW_ORIGIN, HeaderValue::from_static("*"));
+        return;
+    }
     headers.insert(header::ACCESS_CONTROL_ALLOW_ORIGIN, HeaderValue::from_static("*"));
     headers.insert(header::ACCESS_CONTROL_EXPOSE_HEADERS, EXPOSED);
     headers.insert(header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));

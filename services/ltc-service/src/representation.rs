@@ -48,7 +48,8 @@ pub(crate) struct Tagged {
 
 impl Tagged {
     pub(crate) fn new(bytes: Vec<u8>) -> Self {
-        Self::new_bytes(bytes.into())
+        // Without the room that it grew into: it may be kept for long, and is counted by its length.
+        Self::new_bytes(bytes.into_boxed_slice().into())
     }
 
     pub(crate) fn new_bytes(bytes: Bytes) -> Self {
@@ -97,8 +98,10 @@ pub(crate) struct Rendered {
 impl Rendered {
     /// With the headers that every answer has, so that nothing but the request's id is added to them later.
     fn new(mut headers: HeaderMap, content: Tagged, immutable: bool) -> Self {
-        crate::headers::add(&mut headers);
-        Self { headers_of_news: without_content(headers.clone()), headers, content, immutable }
+        let mut headers_of_news = headers.clone();
+        crate::headers::add(&mut headers_of_news, StatusCode::NOT_MODIFIED);
+        crate::headers::add(&mut headers, StatusCode::OK);
+        Self { headers_of_news, headers, content, immutable }
     }
 
     /// The answer of 200; for `HEAD` without its body.
@@ -179,41 +182,34 @@ impl Representation {
             headers.insert(header::ETAG, etag);
         }
         let length = content.bytes.len();
-        match request.judge(&content.etag, length) {
+        let wanted = request.judge(&content.etag, length);
+        // Whoever asks only whether something is new makes its answer known as well as who fetches it.
+        let known = matches!(wanted, Wanted::NotModified | Wanted::Part(Part::Whole)) && kept;
+        let rendered = known.then(|| {
+            let (headers, content) = (headers.clone(), content.clone());
+            Arc::new(Rendered::new(headers, content, caching == Caching::Immutable))
+        });
+        let mut response = match wanted {
             Wanted::Nothing => {
                 let reason = "the current representation is not one that If-Match names".to_owned();
-                Err(ApiError::PreconditionFailed { reason })
+                return Err(ApiError::PreconditionFailed { reason });
             }
-            Wanted::NotModified => Ok(news(without_content(headers))),
-            Wanted::Part(Part::Whole) => {
-                let rendered = kept.then(|| {
-                    let (headers, content) = (headers.clone(), content.clone());
-                    Arc::new(Rendered::new(headers, content, caching == Caching::Immutable))
-                });
-                let mut response = (headers, Body::from(content.bytes)).into_response();
-                if let Some(rendered) = rendered {
-                    response.extensions_mut().insert(rendered);
-                }
-                Ok(response)
-            }
-            Wanted::Part(Part::Unsatisfiable) => Err(ApiError::RangeNotSatisfiable { length }),
+            Wanted::NotModified => news(headers),
+            Wanted::Part(Part::Whole) => (headers, Body::from(content.bytes)).into_response(),
+            Wanted::Part(Part::Unsatisfiable) => return Err(ApiError::RangeNotSatisfiable { length }),
             Wanted::Part(Part::Bytes(range)) => {
                 let content_range = format!("bytes {}-{}/{length}", range.start, range.end - 1);
                 let content_range = HeaderValue::from_str(&content_range).map_err(ApiError::internal)?;
                 headers.insert(header::CONTENT_RANGE, content_range);
                 let part = Body::from(content.bytes.slice(range));
-                Ok((StatusCode::PARTIAL_CONTENT, headers, part).into_response())
+                (StatusCode::PARTIAL_CONTENT, headers, part).into_response()
             }
+        };
+        if let Some(rendered) = rendered {
+            response.extensions_mut().insert(rendered);
         }
+        Ok(response)
     }
-}
-
-/// Without the headers that are about a body.
-fn without_content(mut headers: HeaderMap) -> HeaderMap {
-    for name in [header::CONTENT_TYPE, header::CONTENT_DISPOSITION, header::CONTENT_ENCODING] {
-        headers.remove(name);
-    }
-    headers
 }
 
 /// 304 with these headers.

@@ -23,6 +23,10 @@ impl RequestId {
         self.0.clone()
     }
 
+    pub(crate) fn into_header(self) -> HeaderValue {
+        self.0
+    }
+
     pub(crate) fn of(headers: &HeaderMap) -> Self {
         headers.get(&X_REQUEST_ID).filter(|v| is_plain(v.as_bytes())).cloned().map_or_else(Self::fresh, Self)
     }

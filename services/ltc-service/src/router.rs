@@ -12,8 +12,8 @@ use tower_http::catch_panic::CatchPanicLayer;
 use crate::gate::Gate;
 use crate::metrics::RouteLabel;
 use crate::routes::{
-    aliases, benchmarks, data, diff, docs, events, health, index, lookup, metrics, problems, refits, shaders,
-    tables, upload,
+    aliases, benchmarks, data, diff, docs, events, health, history, index, lookup, metrics, problems, refits,
+    shaders, tables, upload,
 };
 use crate::{ApiError, AppState};
 
@@ -24,6 +24,7 @@ fn routes(upload_bytes: usize) -> Vec<(&'static str, MethodRouter<AppState>)> {
         get(tables::versions).merge(post(upload::version).layer(DefaultBodyLimit::max(upload_bytes)));
     vec![
         ("/", get(index::page)),
+        ("/benchmarks", get(history::charts)),
         ("/docs", get(docs::page)),
         ("/openapi.json", get(docs::openapi)),
         ("/problems", get(problems::list)),

@@ -11,7 +11,7 @@ use axum::http::Request;
 use hyper::body::{Body as _, Incoming};
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
-use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::rt::TokioIo;
 use hyper_util::server::graceful::GracefulShutdown;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
@@ -19,6 +19,7 @@ use tokio::task::JoinSet;
 
 use crate::AppState;
 use crate::gate::Gate;
+use crate::patience::Patience;
 use crate::router::gate;
 use crate::settings::Limits;
 use crate::stop::{Stop, on_signals, wait};
@@ -127,6 +128,7 @@ async fn chores(state: AppState) {
         }
         if round % 30 == 0 {
             state.rates().forget();
+            crate::memory::give_back();
         }
     }
 }
@@ -160,11 +162,11 @@ impl Connections {
 
     fn new(limits: &Limits, gate: Gate) -> Self {
         let mut protocol = http1::Builder::new();
+        // No `pipeline_flush`: it holds back the answer to what is no HTTP for as long as bytes of that are unread, which is for ever.
         protocol
-            .timer(TokioTimer::new())
             .header_read_timeout(limits.header_time())
-            .max_buf_size(Self::HEAD_BYTES)
-            .pipeline_flush(true);
+            .max_header_size(Self::HEAD_BYTES)
+            .max_buf_size(Self::HEAD_BYTES);
         let permits = Arc::new(Semaphore::new(limits.connections));
         Self { gate, protocol, graceful: GracefulShutdown::new(), tasks: JoinSet::new(), permits }
     }
@@ -186,7 +188,8 @@ impl Connections {
             let gate = gate.clone();
             async move { Ok::<_, Infallible>(gate.answer(with_body(request), Some(peer.ip())).await) }
         });
-        let connection = self.protocol.serve_connection(TokioIo::new(stream), service);
+        let mut protocol = self.protocol.clone();
+        let connection = protocol.timer(Patience::new()).serve_connection(TokioIo::new(stream), service);
         let connection = self.graceful.watch(connection);
         self.tasks.spawn(async move {
             let _permit = permit;

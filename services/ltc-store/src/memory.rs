@@ -193,7 +193,13 @@ impl Metadata for MemoryStore {
         let mut found = self.state().benchmarks.clone();
         found.retain(|(at, b)| *at >= since && filter.name.as_ref().is_none_or(|name| *name == b.name));
         found.sort_by_key(|(at, b)| (*at, b.id));
-        let first = found.len().saturating_sub(filter.limit as usize);
+        let mut bytes = 0;
+        let fits = |(place, (_, benchmark)): &(usize, &(i64, Benchmark))| {
+            bytes += benchmark.run.to_string().len();
+            bytes <= filter.bytes || *place == 0
+        };
+        let count = found.iter().rev().take(filter.limit as usize).enumerate().take_while(fits).count();
+        let first = found.len() - count;
         Ok(found.split_off(first).into_iter().map(|(_, b)| b).collect())
     }
 

@@ -121,7 +121,7 @@ pub struct Benchmark {
 }
 
 /// Which benchmark runs to list.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BenchmarkFilter {
     /// Of this series alone.
     pub name: Option<String>,
@@ -129,6 +129,15 @@ pub struct BenchmarkFilter {
     pub since: Option<String>,
     /// At most so many, the newest.
     pub limit: u32,
+    /// No more than fit into so many bytes of JSON, but always the newest: runs are as large as whoever posts them makes them.
+    pub bytes: usize,
+}
+
+impl Default for BenchmarkFilter {
+    /// Everything, as far as it fits into 16 MiB.
+    fn default() -> Self {
+        Self { name: None, since: None, limit: u32::MAX, bytes: 16 << 20 }
+    }
 }
 
 /// Versions, aliases, tokens and benchmarks. Every method is one transaction; what it acknowledged survives a kill.

@@ -8,13 +8,14 @@ use clap::{Args, Subcommand};
 use ltc_benches::study::{self, Plan, Run, Step, Thresholds, Verdict};
 use ltc_table::files::write_atomically;
 
+use super::bench_post::{How, Post};
 use crate::progress::Reporter;
 use crate::tables::Tables;
 
 /// Measures run time against error on this machine: tables, lookups, integrals, pictures, and forms on the graphics device.
 ///
 /// Writes bench.json, bench.csv, bench.html (one page that needs nothing else), bencher.json (Bencher Metric Format) and
-/// github-action-benchmark.json. Compare two runs with `ltc bench compare`.
+/// github-action-benchmark.json. Compare two runs with `ltc bench compare`; keep their history on a service with `ltc bench post`.
 ///
 /// Example: ltc bench --quick -o /tmp/bench
 #[derive(Args)]
@@ -40,11 +41,17 @@ pub struct Bench {
     /// Prints bench.json, too.
     #[arg(long)]
     json: bool,
+    /// Sends the run to the table service at this address, too; see `ltc bench post --help`.
+    #[arg(long, value_name = "URL")]
+    post: Option<String>,
+    #[command(flatten)]
+    how: How,
 }
 
 #[derive(Subcommand)]
 enum Command {
     Compare(Compare),
+    Post(Post),
 }
 
 /// Compares two runs: ratios of times with their intervals, and of errors; fails where something became worse.
@@ -71,9 +78,12 @@ struct Compare {
 
 impl Bench {
     pub fn run(self, tables: &Tables) -> Result<()> {
-        if let Some(Command::Compare(compare)) = self.command {
-            return compare.run();
+        match self.command {
+            Some(Command::Compare(compare)) => return compare.run(),
+            Some(Command::Post(post)) => return post.run(read),
+            None => {}
         }
+        let destination = self.post.as_deref().map(|url| self.how.destination(url)).transpose()?;
         let folder = &self.output;
         std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
         let date = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
@@ -113,7 +123,7 @@ impl Bench {
             let (count, page) = (run.records.len(), folder.join("bench.html"));
             outln!("{count} figures; the page is {}", page.display());
         }
-        Ok(())
+        destination.map_or(Ok(()), |destination| destination.send(&run))
     }
 }
 

@@ -2,6 +2,7 @@
 
 pub mod backup;
 pub mod bench;
+mod bench_post;
 pub mod diff;
 pub mod export;
 pub mod fit;

@@ -64,6 +64,8 @@ impl Serve {
             out!("{}", settings.to_toml()?);
             return Ok(());
         }
+        // Before anything starts a thread.
+        ltc_service::share_heaps();
         start_log(filter, settings.log_format);
         let catalogue = tables.catalogue()?;
         let runtime = tokio::runtime::Runtime::new().context("cannot start threads")?;

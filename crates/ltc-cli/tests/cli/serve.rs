@@ -173,3 +173,54 @@ fn logs_tell_what_happened_and_no_secret() {
     let log = log_of(&folder.path().join("other"), "text", |_| {});
     assert!(log.contains("there is no token, so that nobody can write"), "{log}");
 }
+
+/// A short result of `ltc bench`.
+fn result(time: f64) -> serde_json::Value {
+    serde_json::json!({
+        "schema": 1, "tool": "0.1.0", "quick": true, "date": "2026-01-01T00:00:00Z", "commit": "abc",
+        "machine": {"cpu": "a", "threads": 2, "system": "linux", "build": "optimised"},
+        "records": [{
+            "id": "integral/quad/exact/f32", "per": "light",
+            "time": {"median": time, "low": 0.98 * time, "high": 1.02 * time}, "errors": {"max": 6e-7},
+        }],
+    })
+}
+
+#[test]
+fn benchmark_runs_are_posted_and_their_history_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().join("data");
+    let data = data.to_str().unwrap();
+    let made = ltc(&["token", "create", "--data", data, "--scope", "benchmark", "--json"]).json();
+    let token = made["token"].as_str().unwrap();
+    let served = Served::start_with(&["serve", "--listen", "127.0.0.1:0", "--data", data, "--log", "error"]);
+    let url = format!("http://{}", served.address);
+    for (name, time) in [("before", 40.0), ("after", 50.0)] {
+        let run = folder.path().join(name);
+        std::fs::create_dir(&run).unwrap();
+        std::fs::write(run.join("bench.json"), result(time).to_string()).unwrap();
+        let run = run.to_str().unwrap();
+        let posted = command(&["bench", "post", run, "--to", &url]).env("LTC_TOKEN", token).output().unwrap();
+        let said = String::from_utf8(posted.stdout).unwrap();
+        assert!(said.contains(&format!("the history is at {url}/benchmarks")), "{said}");
+    }
+    let (status, page) = served.get("/benchmarks");
+    assert_eq!(status, 200);
+    assert!(page.contains("2 runs, 2 measures.") && page.contains("integral/quad/exact/f32 time"), "{page}");
+    assert_eq!(page.matches("class=\"worse\" d=").count(), 1, "{page}");
+    let (_, list) = served.get("/v1/benchmarks?name=ltc%20bench");
+    let list: serde_json::Value = serde_json::from_str(&list).unwrap();
+    assert_eq!(list["benchmarks"][1]["run"], result(50.0), "as it was");
+    // A token from a file; one that is not good; none.
+    let (after, file) = (folder.path().join("after"), folder.path().join("token"));
+    let (after, file_name) = (after.to_str().unwrap(), file.to_str().unwrap());
+    std::fs::write(&file, format!("{token}\n")).unwrap();
+    let post = ["bench", "post", after, "--to", &url, "--series", "other", "--token-file", file_name];
+    ltc(&post).good();
+    std::fs::write(&file, "ltc_wrong").unwrap();
+    ltc(&post).refused(&["was not taken", "401"]);
+    ltc(&["bench", "post", after, "--to", &url]).refused(&["no token", "LTC_TOKEN"]);
+    // Said before anything is measured.
+    ltc(&["bench", "--post", &url, "-o", after]).refused(&["no token"]);
+    ltc(&["bench", "post", "/nowhere", "--to", &url, "--token-file", file_name]).refused(&["/nowhere"]);
+}

@@ -6,6 +6,7 @@ mod schemas;
 use serde_json::{Map, Value, json};
 
 use crate::problem_types;
+use crate::routes::history::MOST_RUNS;
 use crate::settings::Access;
 use crate::variant::Format;
 
@@ -178,6 +179,25 @@ fn count(default: u32, most: u32) -> Value {
     json!({ "type": "integer", "minimum": 1, "maximum": most, "default": default })
 }
 
+fn history() -> Operation {
+    let text = || json!({ "type": "string" });
+    operation(
+        "benchmark_history",
+        "benchmarks",
+        "Charts of the runs of `ltc bench` that were posted, for people.",
+    )
+    .query("name", text(), "Of this series alone.")
+    .query("machine", text(), "Of this machine alone, by the name that the page's links have.")
+    .query("measure", text(), "Only measures whose name contains this.")
+    .query("worse", json!({ "type": "boolean", "default": false }), "Only what became worse at some run.")
+    .query("since", text(), "Run at or after this time, in UTC.")
+    .query("limit", count(60, MOST_RUNS), "At most so many runs, the newest.")
+    .query("page", json!({ "type": "integer", "minimum": 1, "default": 1 }), "Of the charts.")
+    .bytes(200, "A page.", &["text/html"])
+    .ranged(&["text/html"])
+    .problems(&[401, 403, 422])
+}
+
 fn service_paths() -> Vec<(&'static str, Value)> {
     let page = |id, summary| {
         operation(id, "service", summary).bytes(200, "A page.", &["text/html"]).ranged(&["text/html"])
@@ -185,6 +205,7 @@ fn service_paths() -> Vec<(&'static str, Value)> {
     let state = |id, summary| operation(id, "service", summary).json(200, "Yes.", "State");
     vec![
         ("/", json!({ "get": page("index", "The tables, for people.").problems(&[401, 403]).0 })),
+        ("/benchmarks", json!({ "get": history().0 })),
         ("/docs", json!({ "get": page("docs", "This description, for people.").0 })),
         (
             "/openapi.json",

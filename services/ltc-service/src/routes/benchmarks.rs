@@ -38,7 +38,7 @@ fn check_name(name: &str) -> Result<(), ApiError> {
 }
 
 /// A time as the store takes it: RFC 3339 in UTC.
-fn check_time(field: &str, text: &str) -> Result<(), ApiError> {
+pub(super) fn check_time(field: &str, text: &str) -> Result<(), ApiError> {
     let read = humantime::parse_rfc3339(text);
     read.map(drop).map_err(|_| {
         ApiError::invalid(field, format!("is not a time in UTC such as 2026-01-31T12:00:00Z: {text:?}"))
@@ -86,7 +86,7 @@ const LISTED: u32 = 1000;
 /// Runs in a list at most.
 const MOST_LISTED: u32 = 10_000;
 
-/// `GET /v1/benchmarks?name=&since=&limit=`: the newest that fit, oldest first.
+/// `GET /v1/benchmarks?name=&since=&limit=`: the newest that fit, into 16 MiB too, oldest first.
 pub(crate) async fn list(
     State(state): State<AppState>,
     RawQuery(query): RawQuery,
@@ -99,7 +99,8 @@ pub(crate) async fn list(
     if let Some(since) = &since {
         check_time("since", since)?;
     }
-    let found = state.stores().metadata.benchmarks(&BenchmarkFilter { name, since, limit }).await?;
+    let filter = BenchmarkFilter { name, since, limit, ..BenchmarkFilter::default() };
+    let found = state.stores().metadata.benchmarks(&filter).await?;
     let benchmarks =
         found.iter().map(|Benchmark { id, name, at, run }| Shown { id: *id, name, at, run }).collect();
     Representation::json(&List { benchmarks }, Caching::Checked)?.respond(&request)

@@ -7,6 +7,7 @@ pub(crate) mod diff;
 pub(crate) mod docs;
 pub(crate) mod events;
 pub(crate) mod health;
+pub(crate) mod history;
 pub(crate) mod index;
 pub(crate) mod lookup;
 pub(crate) mod metrics;

@@ -83,6 +83,7 @@ async fn the_wire_has_what_the_router_said() {
     let answer = server.exchange(&request("GET", &path, "if-none-match: *\r\n")).await;
     let (head, body) = parts(&answer);
     assert!(head.starts_with("http/1.1 304 not modified\r\n"), "{head}");
+    assert!(!head.contains("content-length"), "{head}");
     assert!(!head.contains("content-length: 0"), "a length would be the table's: {head}");
     assert!(body.is_empty());
 
@@ -90,6 +91,25 @@ async fn the_wire_has_what_the_router_said() {
     let (head, body) = parts(&answer);
     assert!(head.starts_with("http/1.1 206 partial content\r\n"), "{head}");
     assert_eq!(body, &payload[payload.len() - 5..]);
+}
+
+#[tokio::test]
+async fn what_is_no_http_is_told_so() {
+    let server = Server::start(Settings::default()).await;
+    let long = format!("GET / HTTP/1.1\r\nhost: a\r\na: {}\r\n\r\n", "b".repeat(100 << 10)).into_bytes();
+    for (bytes, status) in [
+        (&b"GET / HTTP/1.1\r\nho st: a\r\n\r\n"[..], "400"),
+        (b"G\0T / HTTP/1.1\r\nhost: a\r\n\r\n", "400"),
+        (b"GET /a b HTTP/1.1\r\nhost: a\r\n\r\n", "400"),
+        // The beginning of TLS.
+        (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n", "400"),
+        (b"POST /v1/benchmarks HTTP/1.1\r\nhost: a\r\ncontent-length: 5x\r\n\r\n{", "400"),
+        (&long, "431"),
+    ] {
+        let answer = server.exchange(bytes).await;
+        let answer = String::from_utf8_lossy(&answer);
+        assert!(answer.starts_with(&format!("HTTP/1.1 {status} ")), "{answer:?}");
+    }
 }
 
 #[tokio::test]

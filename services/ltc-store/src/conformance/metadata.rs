@@ -199,8 +199,8 @@ async fn benchmarks(store: &dyn Metadata) {
     }
     assert_eq!(kind(store.add_benchmark("a", "yesterday", run.clone()).await), "conflict");
     let ids = async |name: Option<&str>, since: Option<&str>, limit| {
-        let filter =
-            BenchmarkFilter { name: name.map(str::to_owned), since: since.map(str::to_owned), limit };
+        let (name, since) = (name.map(str::to_owned), since.map(str::to_owned));
+        let filter = BenchmarkFilter { name, since, limit, ..BenchmarkFilter::default() };
         store.benchmarks(&filter).await.unwrap().iter().map(|b| b.id).collect::<Vec<_>>()
     };
     assert_eq!(ids(None, None, 9).await, [4, 3, 1, 2], "oldest first");
@@ -211,4 +211,11 @@ async fn benchmarks(store: &dyn Metadata) {
     let first =
         &store.benchmarks(&BenchmarkFilter { limit: 1, ..BenchmarkFilter::default() }).await.unwrap()[0];
     assert_eq!((first.name.as_str(), first.at.as_str(), &first.run), ("b", "2026-01-03T00:00:00Z", &run));
+    let each = run.to_string().len();
+    for (bytes, count) in [(4 * each, 4), (4 * each - 1, 3), (each, 1), (0, 1)] {
+        let filter = BenchmarkFilter { bytes, ..BenchmarkFilter::default() };
+        let found = store.benchmarks(&filter).await.unwrap();
+        assert_eq!(found.len(), count, "{bytes} bytes");
+        assert_eq!(found.last().map(|b| b.id), Some(2), "the newest");
+    }
 }

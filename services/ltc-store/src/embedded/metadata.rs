@@ -135,7 +135,7 @@ impl Metadata for EmbeddedStore {
 
     async fn benchmarks(&self, filter: &BenchmarkFilter) -> Result<Vec<Benchmark>, StoreError> {
         let since = filter.since.as_deref().map(clock::parse).transpose()?;
-        let (name, limit) = (filter.name.clone(), filter.limit);
+        let (name, limit, most) = (filter.name.clone(), filter.limit, filter.bytes);
         let sql = format!(
             "SELECT {} FROM benchmarks WHERE (?1 IS NULL OR name = ?1) AND at_micros >= ?2 \
              ORDER BY at_micros DESC, id DESC LIMIT ?3",
@@ -144,7 +144,16 @@ impl Metadata for EmbeddedStore {
         let since = since.unwrap_or(i64::MIN);
         self.database
             .read(move |db| {
-                let mut found = all(db, &sql, params![name, since, limit], rows::benchmark)?;
+                let mut statement = db.prepare_cached(&sql).map_err(failed)?;
+                let mut rows = statement.query(params![name, since, limit]).map_err(failed)?;
+                let (mut found, mut bytes) = (Vec::new(), 0);
+                while let Some(row) = rows.next().map_err(failed)? {
+                    bytes += rows::benchmark_bytes(row).map_err(failed)?;
+                    if bytes > most && !found.is_empty() {
+                        break;
+                    }
+                    found.push(rows::benchmark(row).map_err(failed)?);
+                }
                 found.reverse();
                 Ok(found)
             })

@@ -99,6 +99,11 @@ pub(super) fn benchmark(row: &Row<'_>) -> rusqlite::Result<Benchmark> {
     })
 }
 
+/// Bytes of a run, without reading it.
+pub(super) fn benchmark_bytes(row: &Row<'_>) -> rusqlite::Result<usize> {
+    Ok(row.get_ref(3)?.as_str()?.len())
+}
+
 /// Columns of [`job`].
 pub(super) const JOB: &str = "id, name, spec, spec_digest, priority, alias, force, owner, key, state, progress, seconds_left, \
                               tv, version, error, attempts, created, updated, cancel, seq";

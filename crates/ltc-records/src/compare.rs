@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Interval, Record, Run, YARDSTICK};
+use crate::{Interval, Record, Run, YARDSTICK};
 
 /// From which ratio on a change counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,7 +106,8 @@ fn yardstick(record: &Record) -> Option<String> {
     }
 }
 
-fn measures(record: &Record) -> Vec<(String, Interval)> {
+/// Every figure of a record: `time` in nanoseconds, `bytes`, and errors by their kind. Exact ones are intervals of no width.
+pub fn measures(record: &Record) -> Vec<(String, Interval)> {
     let exact = |x: f64| Interval { median: x, low: x, high: x };
     let time = record.time.map(|time| ("time".to_owned(), time));
     let bytes = record.bytes.map(|bytes| ("bytes".to_owned(), exact(bytes as f64)));
@@ -167,8 +168,8 @@ fn doubts(before: &Run, after: &Run) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Machine;
     use super::*;
+    use crate::Machine;
 
     fn run() -> Run {
         let time = |median: f64| Interval { median, low: 0.97 * median, high: 1.03 * median };

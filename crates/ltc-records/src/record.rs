@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::Machine;
+use crate::Machine;
 
 /// The layout of [`Run`] that this program writes.
 pub const SCHEMA: u32 = 1;
