@@ -88,7 +88,7 @@ pub fn run_on_device(
     observe: &dyn Fn(Step<'_>),
 ) -> Result<Run, StudyError> {
     let step = |done: usize, stage: &str| observe(Step { stage, done, total: 1 });
-    let (mut machine, mut records) = (Machine::here(), Vec::new());
+    let (mut machine, mut records) = (machine::here(), Vec::new());
     if let Some(reason) = on_device(&mut machine, &mut records, plan, catalogue, &|form| step(0, form))? {
         return Err(StudyError::NoDevice(reason));
     }
