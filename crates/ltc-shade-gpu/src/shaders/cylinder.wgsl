@@ -19,13 +19,15 @@ struct LtcCylinder {
     valid: bool,
 }
 
-// The square of the distance of the line through p0 and p1 from the origin, less that of the radius, all of them up to 1.
+// From p to q, its largest component between 0.5 and 1; p and q of coordinates up to 1.
+fn ltc_cylinder_axis(p: LtcSplit, q: LtcSplit, extent: f32) -> LtcSplit {
+    let grow = 0.5 / max(ltc_floor_power_of_two(extent), LTC_TINY);
+    return ltc_split_sum((q.whole - p.whole) * grow, (q.rest - p.rest) * grow);
+}
+
+// The square of the distance from the origin of the line through p along `a`, less that of the radius, all of them up to 1.
 // Near the surface it is a small difference of what f32 has no digits for.
-fn ltc_outside_of_cylinder(p0: vec3f, p1: vec3f, radius: f32) -> f32 {
-    let p = ltc_split(p0);
-    let q = ltc_split(p1);
-    let grow = 0.5 / max(ltc_floor_power_of_two(ltc_largest_component(p1 - p0)), LTC_TINY);
-    let a = ltc_split_sum((q.whole - p.whole) * grow, (q.rest - p.rest) * grow);
+fn ltc_outside_of_cylinder(p: LtcSplit, a: LtcSplit, radius: f32) -> f32 {
     let moment = p.whole.yzx * a.whole.zxy - p.whole.zxy * a.whole.yzx;
     let small = (p.whole.yzx * a.rest.zxy - p.whole.zxy * a.rest.yzx)
         + (p.rest.yzx * a.whole.zxy - p.rest.zxy * a.whole.yzx)
@@ -48,8 +50,15 @@ fn ltc_cylinder_view(p0: vec3f, p1: vec3f, radius: f32) -> LtcCylinder {
     let nearer = select(b, a, dot(a, a) <= dot(b, b));
     let towards = ltc_unit_or_zero(cross(along, ltc_cross(nearer, along)));
     let valid = radius > 0.0 && size > LTC_TINY && dot(along, along) > 0.5;
-    let outside = ltc_outside_of_cylinder(nearer, select(a, b, dot(a, a) <= dot(b, b)), r);
-    return LtcCylinder(along, towards, dot(a, along), dot(b, along), r, outside, valid);
+    let p = ltc_split(a);
+    let q = ltc_split(b);
+    let axis = ltc_cylinder_axis(p, q, ltc_largest_component(b - a));
+    let outside = ltc_outside_of_cylinder(ltc_split(nearer), axis, r);
+    // Where an end is along the axis decides what is seen of it from beside its rim.
+    let per_length = 1.0 / max(length(axis.whole + axis.rest), LTC_TINY);
+    let low = ltc_precise_dot(p, axis) * per_length;
+    let high = ltc_precise_dot(q, axis) * per_length;
+    return LtcCylinder(along, towards, low, high, r, outside, valid);
 }
 
 // The fraction of the lobe that sees the cylinder, in [0, 1]. With `caps` it is a closed solid, seen in every direction from

@@ -62,3 +62,9 @@ fn ltc_difference_of_squares(a: LtcSplit, b: LtcSplit) -> f32 {
     let exact = ltc_apart(vec3f(dot(a.whole, a.whole) - dot(b.whole, b.whole)));
     return exact.x + (2.0 * middle + small);
 }
+
+// a . b to some 2^-33, coordinates up to 1.
+fn ltc_precise_dot(a: LtcSplit, b: LtcSplit) -> f32 {
+    let small = dot(a.whole, b.rest) + dot(a.rest, b.whole) + dot(a.rest, b.rest);
+    return ltc_apart(vec3f(dot(a.whole, b.whole))).x + small;
+}

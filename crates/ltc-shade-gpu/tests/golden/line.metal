@@ -190,6 +190,16 @@ float ltc_difference_of_squares(
     return _e24.x + ((2.0 * middle) + small);
 }
 
+// a . b to some 2^-33, coordinates up to 1.
+float ltc_precise_dot(
+    LtcSplit a,
+    LtcSplit b
+) {
+    float small = (metal::dot(a.whole, b.rest) + metal::dot(a.rest, b.whole)) + metal::dot(a.rest, b.rest);
+    metal::float3 _e17 = ltc_apart(metal::float3(metal::dot(a.whole, b.whole)));
+    return _e17.x + small;
+}
+
 float ltc_largest_entry(
     metal::float3x3 m
 ) {

@@ -159,6 +159,13 @@ float ltc_difference_of_squares(LtcSplit a, LtcSplit b) {
     return (_e24.x + ((2.0 * middle) + small));
 }
 
+// a . b to some 2^-33, coordinates up to 1.
+float ltc_precise_dot(LtcSplit a, LtcSplit b) {
+    float small = ((dot(a.whole, b.rest) + dot(a.rest, b.whole)) + dot(a.rest, b.rest));
+    vec3 _e17 = ltc_apart(vec3(dot(a.whole, b.whole)));
+    return (_e17.x + small);
+}
+
 float ltc_largest_entry(mat3x3 m) {
     float _e2 = ltc_largest_component(m[0]);
     float _e4 = ltc_largest_component(m[1]);

@@ -132,6 +132,12 @@ fn ltc_difference_of_squares(a: LtcSplit, b: LtcSplit) -> f32 {
     return exact.x + (2.0 * middle + small);
 }
 
+// a . b to some 2^-33, coordinates up to 1.
+fn ltc_precise_dot(a: LtcSplit, b: LtcSplit) -> f32 {
+    let small = dot(a.whole, b.rest) + dot(a.rest, b.whole) + dot(a.rest, b.rest);
+    return ltc_apart(vec3f(dot(a.whole, b.whole))).x + small;
+}
+
 // A lobe as lights need it: M and its inverse up to scale, by cofactors. No bindings. Needs: math, precise.
 
 struct LtcLobe {
