@@ -107,18 +107,17 @@ impl<'a> ChannelStage<'a> {
             .zip(between)
             .map(|(query, item)| self.row(query, item))
             .collect::<Result<_, _>>()?;
-        let solve = |start: &[f64], value: fn(&Row) -> f64| {
-            tied(self.lattice, &least_power(self.power, start, &rows, value))
-        };
-        let (mut magnitude, mut fresnel) =
-            rayon::join(|| solve(&magnitude, |r| r.magnitude), || solve(&fresnel, |r| r.fresnel));
         // No surface reflects more than it gets (or its model lets it), and a Fresnel weight is at most 1: least squares
         // alone may say otherwise.
-        for (n, f) in magnitude.iter_mut().zip(&mut fresnel) {
-            *n = n.clamp(0.0, self.brdf.max_magnitude());
-            *f = f.clamp(0.0, *n);
-        }
+        let most = vec![self.brdf.max_magnitude(); magnitude.len()];
+        let magnitude = self.solve(&magnitude, &rows, &most, |row| row.magnitude);
+        let fresnel = self.solve(&fresnel, &rows, &magnitude, |row| row.fresnel);
         Ok((magnitude, fresnel))
+    }
+
+    /// The entries between 0 and `most` that leave the least errors, those that share a lobe alike.
+    fn solve(&self, own: &[f64], rows: &[Row], most: &[f64], value: fn(&Row) -> f64) -> Vec<f64> {
+        tied(self.lattice, &least_power(self.power, own, rows, most, value))
     }
 
     /// The equation of a query, for the entries that own themselves: those that share a lobe share a value.
@@ -148,38 +147,46 @@ impl Row {
 
 /// Weight of an entry's own value against one query at it.
 const PULL: f64 = 0.05;
-/// Most that one query may count for, in those with an average error: beyond it single queries would decide.
-const MAX_WEIGHT: f64 = 1e4;
-
-/// Minimises `Σ |interpolation − value|ᵖ` over the errors above the average, and squares below it, by weighted least squares
-/// whose weights `|residual|^(p − 2)` follow, half-way each time, those of the last solution. Queries outside the judged draw
-/// count by their squares: their errors are larger, and would have all weight.
-fn least_power(power: u32, start: &[f64], rows: &[Row], value: fn(&Row) -> f64) -> Vec<f64> {
+/// Minimises `Σ |interpolation − value|ᵖ` by Newton's method: a step is 1/(p − 1) of the way to the weighted least squares
+/// whose weights are `|residual|^(p − 2)`. The power grows from 2 by one each step, so that each begins near its end.
+/// Queries outside the judged draw count by their squares: their errors are larger, and would have all weight.
+fn least_power(power: u32, own: &[f64], rows: &[Row], most: &[f64], value: fn(&Row) -> f64) -> Vec<f64> {
+    let bounded =
+        |x: Vec<f64>| -> Vec<f64> { x.iter().zip(most).map(|(x, most)| x.clamp(0.0, *most)).collect() };
     let mut weights = vec![1.0; rows.len()];
-    let mut solved = least_squares(start, start, rows, &weights, value);
-    for _ in 0..if power > 2 { REWEIGHTINGS } else { 0 } {
+    let mut solved = bounded(least_squares(own, own, rows, &weights, most, value));
+    for step in 1..=if power > 2 { NEWTON_STEPS } else { 0 } {
+        let p = power.min(2 + step);
         let residuals: Vec<f64> =
             rows.iter().map(|row| (value(row) - row.interpolate(&solved)).abs()).collect();
         let mean = (residuals.iter().sum::<f64>() / rows.len() as f64).max(f64::MIN_POSITIVE);
         for ((weight, residual), row) in weights.iter_mut().zip(&residuals).zip(rows) {
-            let wanted = (residual / mean).max(1.0).powi(power as i32 - 2).min(MAX_WEIGHT);
-            *weight = if row.judged { 0.5 * (*weight + wanted) } else { 1.0 };
+            let wanted = (residual / mean).clamp(LEAST_RESIDUAL, MOST_RESIDUAL).powi(p as i32 - 2);
+            *weight = if row.judged { wanted } else { 1.0 };
         }
-        solved = least_squares(&solved, start, rows, &weights, value);
+        let goal = least_squares(&solved, own, rows, &weights, most, value);
+        let part = 1.0 / f64::from(p - 1);
+        solved = bounded(solved.iter().zip(goal).map(|(x, goal)| x + part * (goal - x)).collect());
     }
     solved
 }
 
-/// How often [`least_power`] takes new weights; the largest errors settle within ten.
-const REWEIGHTINGS: usize = 10;
+/// Steps of [`least_power`]; the largest errors settle within ten.
+const NEWTON_STEPS: u32 = 12;
+/// Residuals below this part of the average count as this: an entry that all queries agree with stays determined.
+const LEAST_RESIDUAL: f64 = 0.3;
+/// Residuals above this multiple of the average count as this: single queries would decide.
+const MOST_RESIDUAL: f64 = 30.0;
 
 /// Minimises `Σ weight (interpolation − value)² + PULL Σ (entry − own)²` from `start` by conjugate gradients on the normal
-/// equations, each unknown in the units of its own curvature.
+/// equations, each unknown in the units of its own curvature. Those that lie at 0 or at `most` and would go beyond stay where
+/// they are.
 fn least_squares(
     start: &[f64],
     own: &[f64],
     rows: &[Row],
     weights: &[f64],
+    most: &[f64],
     value: fn(&Row) -> f64,
 ) -> Vec<f64> {
     let mut curvature = vec![PULL; start.len()];
@@ -191,6 +198,14 @@ fn least_squares(
             curvature[corner.index] += weight * corner.weight * corner.weight;
         }
     }
+    let held: Vec<bool> = (0..start.len())
+        .map(|i| (start[i] >= most[i] && residual[i] > 0.0) || (start[i] <= 0.0 && residual[i] < 0.0))
+        .collect();
+    let free = |mut x: Vec<f64>| {
+        x.iter_mut().zip(&held).filter(|(_, held)| **held).for_each(|(x, _)| *x = 0.0);
+        x
+    };
+    let mut residual = free(residual);
     let apply = |x: &[f64]| {
         let mut out: Vec<f64> = x.iter().map(|v| PULL * v).collect();
         for (row, weight) in rows.iter().zip(weights) {
@@ -199,7 +214,7 @@ fn least_squares(
                 out[corner.index] += corner.weight * inner;
             }
         }
-        out
+        free(out)
     };
     let scaled = |r: &[f64]| r.iter().zip(&curvature).map(|(r, c)| r / c).collect::<Vec<f64>>();
     let mut change = vec![0.0; start.len()];
@@ -250,22 +265,22 @@ mod tests {
         };
         let rows: Vec<Row> = (0..3000).map(|i| row(f64::from(i) / 2999.0)).collect();
         let start = [0.9, 3.2];
-        let solved = least_squares(&start, &start, &rows, &vec![1.0; rows.len()], |r| r.magnitude);
+        let solved = least_squares(&start, &start, &rows, &vec![1.0; rows.len()], &[9.0; 2], |r| r.magnitude);
         assert!((solved[0] - 1.0).abs() < 1e-3 && (solved[1] - 3.0).abs() < 1e-3, "{solved:?}");
     }
 
     #[test]
     fn a_higher_power_comes_near_the_least_largest_error() {
-        // x² by a line: squares leave 1/6 at the ends, the best line 1/8.
+        // 1 + x² by a line: squares leave 1/6 at the ends, the best line 1/8.
         let row = |t: f64| Row {
             corners: vec![Corner { index: 0, weight: 1.0 - t }, Corner { index: 1, weight: t }],
-            magnitude: t * t,
+            magnitude: 1.0 + t * t,
             fresnel: 0.0,
             judged: true,
         };
         let rows: Vec<Row> = (0..3000).map(|i| row(f64::from(i) / 2999.0)).collect();
         let largest = |power| {
-            let solved = least_power(power, &[0.0, 1.0], &rows, |r| r.magnitude);
+            let solved = least_power(power, &[1.0, 2.0], &rows, &[9.0; 2], |r| r.magnitude);
             rows.iter().map(|row| (row.magnitude - row.interpolate(&solved)).abs()).fold(0.0, f64::max)
         };
         assert!((largest(2) - 1.0 / 6.0).abs() < 1e-3, "{}", largest(2));

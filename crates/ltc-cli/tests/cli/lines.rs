@@ -41,7 +41,8 @@ fn lookups_have_the_shape_that_pipelines_read() {
             let m: [f64; 9] = numbers(&lobe["m"]).try_into().unwrap();
             assert!(glam::DMat3::from_cols_array(&m).determinant() > 0.0, "{lobe}");
         }
-        assert!(answer["magnitude"].as_f64().unwrap() > 0.3);
+        // 0.307 at least over all materials, and lookups are within 0.02 of it.
+        assert!(answer["magnitude"].as_f64().unwrap() > 0.307 - 0.02);
         assert!(answer["fresnel"].as_f64().unwrap() >= 0.0);
         assert_eq!(answer.as_object().unwrap().len(), 3, "{answer}");
     }
