@@ -270,8 +270,9 @@ mod tests {
     }
 
     #[test]
-    fn a_higher_power_comes_near_the_least_largest_error() {
-        // 1 + x² by a line: squares leave 1/6 at the ends, the best line 1/8.
+    fn powers_of_the_error_are_minimised() {
+        // 1 + x² by a line, which by symmetry is 1 − c + x: c solves ∫ (x² − x + c)^(p−1) dx = 0, found by bisection, and the
+        // error is largest at the ends, where it is c. The least largest error is 1/8.
         let row = |t: f64| Row {
             corners: vec![Corner { index: 0, weight: 1.0 - t }, Corner { index: 1, weight: t }],
             magnitude: 1.0 + t * t,
@@ -283,7 +284,9 @@ mod tests {
             let solved = least_power(power, &[1.0, 2.0], &rows, &[9.0; 2], |r| r.magnitude);
             rows.iter().map(|row| (row.magnitude - row.interpolate(&solved)).abs()).fold(0.0, f64::max)
         };
-        assert!((largest(2) - 1.0 / 6.0).abs() < 1e-3, "{}", largest(2));
-        assert!(largest(8) < 0.138, "{}", largest(8));
+        for (power, expected) in [(2, 1.0 / 6.0), (4, 0.151_022), (8, 0.140_599)] {
+            let found = largest(power);
+            assert!((found - expected).abs() < 3e-4, "{power}: {found}");
+        }
     }
 }
