@@ -1,6 +1,6 @@
 //! Times on a graphics device: lookups, integrals, both, with the published forms beside them, and the ratios between them.
 //!
-//! Every form runs over the same floor ([`scene`]), is held against `ltc_core` and `ltc_table` in `f64` first, and is timed in
+//! Every form runs over the same floor (`scene.rs`), is held against `ltc_core` and `ltc_table` in `f64` first, and is timed in
 //! turns with all others of its picture by [`ltc_shade_gpu::timing`]. The published forms are written from the papers, in
 //! `wgsl/`; nothing of them is in the shipped modules.
 
