@@ -4,6 +4,7 @@
 //! that hazards are made of ([`shapes`]), and the tolerances, each named once and justified ([`tolerance`]).
 
 mod back_end;
+mod devices;
 mod job;
 mod lights;
 pub mod make;

@@ -5,9 +5,10 @@ use std::sync::LazyLock;
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use ltc_core::points::SplitMix64;
 use ltc_core::{Horizon, Ltc, Matrix as _, Sides};
-use ltc_shade_gpu::{Gpu, GpuError, GpuOptions, LightJob, LightKind, LightShape, Lights};
+use ltc_shade_gpu::{Gpu, LightJob, LightKind, LightShape, Lights};
 use ltc_table::{Query, Table};
 
+use crate::devices::on_each_device;
 use crate::shapes;
 
 /// One way to integrate lights of every kind under lobes.
@@ -69,29 +70,8 @@ impl LightBackEnd for LightsF32 {
 }
 
 impl LightsOnGpu {
-    /// A device of each kind of driver that can run here: of what wgpu finds by itself, and of GL. Says aloud which there is
-    /// not.
-    ///
-    /// # Panics
-    /// For any other fault of a device, and without any device where `CI` is set.
     fn all() -> Vec<Self> {
-        let mut found: Vec<Self> = Vec::new();
-        for backend in [None, Some("gl")] {
-            match Gpu::new(GpuOptions { backend, ..GpuOptions::default() }) {
-                Ok(gpu) if found.iter().any(|other| other.gpu.info() == gpu.info()) => {}
-                Ok(gpu) => match Lights::new(&gpu) {
-                    Ok(lights) => found.push(Self { gpu, lights }),
-                    Err(error) => panic!("{}: {error}", gpu.info()),
-                },
-                Err(error @ GpuError::NoAdapter { .. }) => {
-                    let back_end = backend.unwrap_or("GPU");
-                    println!("{back_end} skipped, because no adapter can run this: {error}");
-                }
-                Err(error) => panic!("{error}"),
-            }
-        }
-        assert!(!found.is_empty() || std::env::var_os("CI").is_none(), "no GPU, and CI is set");
-        found
+        on_each_device(Lights::new).into_iter().map(|(gpu, lights)| Self { gpu, lights }).collect()
     }
 }
 

@@ -8,12 +8,10 @@ use ltc_core::{
     Horizon, InputError, Ltc, Matrix as _, PrefilteredTexture, Real, Sides, TexelGrid, TextureFrame,
     TexturedPolygon, Vector,
 };
-use ltc_shade_gpu::{
-    Gpu, GpuError, GpuOptions, LightKind, LightShape, LightTexture, LightTextures, TexturedJob,
-    TexturedLights,
-};
+use ltc_shade_gpu::{Gpu, LightKind, LightShape, LightTexture, LightTextures, TexturedJob, TexturedLights};
 use ltc_table::{Query, Table};
 
+use crate::devices::on_each_device;
 use crate::light_jobs;
 
 /// Pictures that are hard in different ways; `Texture::brightest` is what errors are measured by.
@@ -110,27 +108,8 @@ static DEVICES: LazyLock<Vec<TexturedOnGpu>> = LazyLock::new(TexturedOnGpu::all)
 
 impl TexturedOnGpu {
     fn all() -> Vec<Self> {
-        let mut found: Vec<Self> = Vec::new();
-        for backend in [None, Some("gl")] {
-            match Gpu::new(GpuOptions { backend, ..GpuOptions::default() }) {
-                Ok(gpu) if found.iter().any(|other| other.gpu.info() == gpu.info()) => {}
-                Ok(gpu) => {
-                    let lights =
-                        LightTextures::upload(&gpu, &textures()).and_then(|t| TexturedLights::new(&gpu, t));
-                    match lights {
-                        Ok(lights) => found.push(Self { gpu, lights }),
-                        Err(error) => panic!("{}: {error}", gpu.info()),
-                    }
-                }
-                Err(error @ GpuError::NoAdapter { .. }) => {
-                    let back_end = backend.unwrap_or("GPU");
-                    println!("{back_end} skipped, because no adapter can run this: {error}");
-                }
-                Err(error) => panic!("{error}"),
-            }
-        }
-        assert!(!found.is_empty() || std::env::var_os("CI").is_none(), "no GPU, and CI is set");
-        found
+        let lights = |gpu: &Gpu| TexturedLights::new(gpu, LightTextures::upload(gpu, &textures())?);
+        on_each_device(lights).into_iter().map(|(gpu, lights)| Self { gpu, lights }).collect()
     }
 }
 

@@ -147,6 +147,7 @@ impl Row {
 
 /// Weight of an entry's own value against one query at it.
 const PULL: f64 = 0.05;
+
 /// Minimises `Σ |interpolation − value|ᵖ` by Newton's method: a step is 1/(p − 1) of the way to the weighted least squares
 /// whose weights are `|residual|^(p − 2)`. The power grows from 2 by one each step, so that each begins near its end.
 /// Queries outside the judged draw count by their squares: their errors are larger, and would have all weight.
@@ -155,7 +156,8 @@ fn least_power(power: u32, own: &[f64], rows: &[Row], most: &[f64], value: fn(&R
         |x: Vec<f64>| -> Vec<f64> { x.iter().zip(most).map(|(x, most)| x.clamp(0.0, *most)).collect() };
     let mut weights = vec![1.0; rows.len()];
     let mut solved = bounded(least_squares(own, own, rows, &weights, most, value));
-    for step in 1..=if power > 2 { NEWTON_STEPS } else { 0 } {
+    let steps = if power > 2 { NEWTON_STEPS } else { 0 };
+    for step in 1..=steps {
         let p = power.min(2 + step);
         let residuals: Vec<f64> =
             rows.iter().map(|row| (value(row) - row.interpolate(&solved)).abs()).collect();
@@ -190,22 +192,22 @@ fn least_squares(
     value: fn(&Row) -> f64,
 ) -> Vec<f64> {
     let mut curvature = vec![PULL; start.len()];
-    let mut residual: Vec<f64> = own.iter().zip(start).map(|(own, start)| PULL * (own - start)).collect();
+    let mut pulled: Vec<f64> = own.iter().zip(start).map(|(own, start)| PULL * (own - start)).collect();
     for (row, weight) in rows.iter().zip(weights) {
         let excess = weight * (value(row) - row.interpolate(start));
         for corner in &row.corners {
-            residual[corner.index] += corner.weight * excess;
+            pulled[corner.index] += corner.weight * excess;
             curvature[corner.index] += weight * corner.weight * corner.weight;
         }
     }
     let held: Vec<bool> = (0..start.len())
-        .map(|i| (start[i] >= most[i] && residual[i] > 0.0) || (start[i] <= 0.0 && residual[i] < 0.0))
+        .map(|i| (start[i] >= most[i] && pulled[i] > 0.0) || (start[i] <= 0.0 && pulled[i] < 0.0))
         .collect();
     let free = |mut x: Vec<f64>| {
         x.iter_mut().zip(&held).filter(|(_, held)| **held).for_each(|(x, _)| *x = 0.0);
         x
     };
-    let mut residual = free(residual);
+    let mut residual = free(pulled);
     let apply = |x: &[f64]| {
         let mut out: Vec<f64> = x.iter().map(|v| PULL * v).collect();
         for (row, weight) in rows.iter().zip(weights) {

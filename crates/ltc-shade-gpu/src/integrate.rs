@@ -79,16 +79,8 @@ struct Encoded {
 
 impl Encoded {
     fn push(&mut self, job: &LightJob, lobe: &Ltc<f32>) {
-        let m = lobe.target_from_cosine();
-        self.jobs.push(IntegrateLayout {
-            m0: m.x_axis.to_array(),
-            unused_0: 0,
-            m1: m.y_axis.to_array(),
-            unused_1: 0,
-            m2: m.z_axis.to_array(),
-            unused_2: 0,
-            light: job.light.encode(Vec3::ZERO, &mut self.vertices),
-        });
+        let light = job.light.encode(Vec3::ZERO, &mut self.vertices);
+        self.jobs.push(IntegrateLayout::new(lobe, light));
     }
 
     /// `done` jobs went before these: errors count from the first of all.

@@ -1,6 +1,7 @@
 //! Structures as the shaders lay them out. Sizes are those of WGSL, checked at compile time.
 
 use bytemuck::{Pod, Zeroable};
+use ltc_core::Ltc;
 use ltc_table::{Axis, Kind, Mapping, Table};
 
 use crate::GpuError;
@@ -37,6 +38,22 @@ pub(crate) struct IntegrateLayout {
     pub m2: [f32; 3],
     pub unused_2: u32,
     pub light: LightLayout,
+}
+
+impl IntegrateLayout {
+    /// A lobe and what it lights.
+    pub fn new(lobe: &Ltc<f32>, light: LightLayout) -> Self {
+        let m = lobe.target_from_cosine();
+        Self {
+            m0: m.x_axis.to_array(),
+            unused_0: 0,
+            m1: m.y_axis.to_array(),
+            unused_1: 0,
+            m2: m.z_axis.to_array(),
+            unused_2: 0,
+            light,
+        }
+    }
 }
 
 /// `LookupJob`.

@@ -91,16 +91,8 @@ impl TexturedLights {
         job.light.check().map_err(input())?;
         self.textures.check(&job.texture, Vec3::ONE, index)?;
         let light = job.light.encode_textured(Vec3::ZERO, &job.texture, vertices);
-        let m = lobe.target_from_cosine();
-        Ok(IntegrateLayout {
-            m0: m.x_axis.to_array(),
-            unused_0: 0,
-            m1: m.y_axis.to_array(),
-            unused_1: 0,
-            m2: m.z_axis.to_array(),
-            unused_2: 0,
-            light: light.ok_or(GpuError::NotTexturable { light: index, kind: job.light.kind() })?,
-        })
+        let light = light.ok_or(GpuError::NotTexturable { light: index, kind: job.light.kind() })?;
+        Ok(IntegrateLayout::new(&lobe, light))
     }
 }
 
