@@ -1,13 +1,16 @@
 //! LTC shading on the GPU.
 
 use glam::{DVec3, Vec3};
-use ltc_core::{PrefilteredTexture, TextureFrame};
+use ltc_core::{Alpha, PrefilteredTexture, TextureFrame};
 use ltc_shade_gpu::{
-    AreaLight, Gpu, GpuOptions, LightShape, LightTexture, LightTextures, Shader, TableTextures, Tables,
+    AreaLight, BakedSlices, Gpu, GpuOptions, LightShape, LightTexture, LightTextures, Shader, ShadingOptions,
+    TableTextures, Tables,
 };
+use ltc_table::Table;
 
 use crate::emitter::Emitter;
 use crate::gbuffer::SurfacePoint;
+use crate::material::ResolvedMaterial;
 use crate::render::prefiltered;
 use crate::shader::Shade;
 use crate::texture_map::TextureMap;
@@ -19,21 +22,55 @@ pub(crate) struct GpuBackend {
     shader: Shader,
     isotropic: TableTextures,
     anisotropic: TableTextures,
+    baked: Option<Baked>,
     lights: Vec<AreaLight>,
 }
 
+/// Slices of the anisotropic table for the scene's materials, and the widths that they are for, in their order.
+struct Baked {
+    slices: BakedSlices,
+    widths: Vec<Alpha>,
+}
+
+impl Baked {
+    /// Nothing where no material is anisotropic, or more are than the device can hold slices.
+    fn of(gpu: &Gpu, table: &Table, materials: &[ResolvedMaterial]) -> Result<Option<Self>, RenderError> {
+        let mut widths: Vec<Alpha> = Vec::new();
+        for material in materials.iter().filter(|m| !m.is_isotropic()) {
+            if !widths.contains(&material.alpha) {
+                widths.push(material.alpha);
+            }
+        }
+        if widths.is_empty() || widths.len() > BakedSlices::most(gpu) {
+            return Ok(None);
+        }
+        Ok(Some(Self { slices: BakedSlices::bake(gpu, table, &widths)?, widths }))
+    }
+
+    fn slice(&self, alpha: Alpha) -> Option<u32> {
+        self.widths.iter().position(|other| *other == alpha).map(|k| k as u32)
+    }
+}
+
 impl GpuBackend {
-    pub fn open(tables: &RenderTables<'_>, lights: &[Emitter]) -> Result<Self, RenderError> {
+    pub fn open(
+        tables: &RenderTables<'_>,
+        lights: &[Emitter],
+        materials: &[ResolvedMaterial],
+    ) -> Result<Self, RenderError> {
         let gpu = Gpu::new(GpuOptions::default())?;
         let textures: Vec<PrefilteredTexture> = prefiltered(lights)?.into_iter().flatten().collect();
-        // What only textured lights need is compiled for them alone.
-        let shader = match textures.as_slice() {
-            [] => Shader::new(&gpu)?,
-            some => Shader::with_textures(&gpu, LightTextures::upload(&gpu, some)?)?,
+        // What only textured lights or baked slices need is compiled for them alone.
+        let textures = match textures.as_slice() {
+            [] => None,
+            some => Some(LightTextures::upload(&gpu, some)?),
         };
+        let baked = Baked::of(&gpu, tables.anisotropic, materials)?;
+        let shader = Shader::with(&gpu, ShadingOptions { textures, baked: baked.is_some() })?;
         let mut numbers = 0..;
         Ok(Self {
             shader,
+            baked,
             isotropic: TableTextures::upload(&gpu, tables.isotropic)?,
             anisotropic: TableTextures::upload(&gpu, tables.anisotropic)?,
             lights: lights.iter().map(|emitter| light(emitter, &mut numbers)).collect(),
@@ -52,8 +89,12 @@ impl Shade for GpuBackend {
     }
 
     fn shade(&self, points: &[SurfacePoint]) -> Result<Vec<DVec3>, RenderError> {
-        let tables = Tables { isotropic: Some(&self.isotropic), anisotropic: Some(&self.anisotropic) };
-        let points: Vec<_> = points.iter().map(surface_point).collect();
+        let tables = Tables {
+            isotropic: Some(&self.isotropic),
+            anisotropic: Some(&self.anisotropic),
+            baked: self.baked.as_ref().map(|baked| &baked.slices),
+        };
+        let points: Vec<_> = points.iter().map(|point| surface_point(point, self.baked.as_ref())).collect();
         let radiance = self.shader.shade(&self.gpu, tables, &points, &self.lights)?;
         Ok(radiance.into_iter().map(|r| Vec3::from_array(r).as_dvec3()).collect())
     }
@@ -77,7 +118,7 @@ fn on_light(map: &TextureMap, number: usize, shape: &LightShape) -> LightTexture
     }
 }
 
-fn surface_point(point: &SurfacePoint) -> ltc_shade_gpu::SurfacePoint {
+fn surface_point(point: &SurfacePoint, baked: Option<&Baked>) -> ltc_shade_gpu::SurfacePoint {
     let material = &point.material;
     ltc_shade_gpu::SurfacePoint {
         position: point.position.as_vec3(),
@@ -87,6 +128,7 @@ fn surface_point(point: &SurfacePoint) -> ltc_shade_gpu::SurfacePoint {
         alpha_x: material.alpha.x() as f32,
         alpha_y: material.alpha.y() as f32,
         isotropic: material.is_isotropic(),
+        slice: baked.and_then(|baked| baked.slice(material.alpha)).filter(|_| !material.is_isotropic()),
         f0: material.f0.as_vec3(),
         f90: material.f90 as f32,
         albedo: material.albedo.as_vec3(),

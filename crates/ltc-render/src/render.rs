@@ -122,7 +122,7 @@ fn open<'a>(
     let lights = &world.lights;
     Ok(match backend {
         #[cfg(feature = "gpu")]
-        Backend::Gpu => Box::new(crate::gpu::GpuBackend::open(tables, lights)?),
+        Backend::Gpu => Box::new(crate::gpu::GpuBackend::open(tables, lights, &world.materials)?),
         #[cfg(not(feature = "gpu"))]
         Backend::Gpu => return Err(RenderError::NoGpuBackend),
         Backend::Cpu => Box::new(Cpu { tables, lights, textures: prefiltered(lights)? }),

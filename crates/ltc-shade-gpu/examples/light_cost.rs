@@ -56,7 +56,11 @@ impl<'a> Bench<'a> {
     /// Nanoseconds for each point, the least of several runs.
     fn time(&self, isotropic: bool, lights: &[AreaLight]) -> Result<f64, GpuError> {
         let points: Vec<_> = (0..POINTS).map(|i| point(i, isotropic)).collect();
-        let tables = Tables { isotropic: Some(&self.isotropic), anisotropic: Some(&self.anisotropic) };
+        let tables = Tables {
+            isotropic: Some(&self.isotropic),
+            anisotropic: Some(&self.anisotropic),
+            ..Tables::default()
+        };
         let mut least = f64::INFINITY;
         for _ in 0..RUNS {
             let start = Instant::now();
@@ -122,6 +126,7 @@ fn point(i: usize, isotropic: bool) -> SurfacePoint {
         wo: Vec3::new(0.5 + 0.3 * x, 0.2 * y, 1.0),
         alpha_x: 0.3 + 0.2 * x,
         alpha_y: if isotropic { 0.3 + 0.2 * x } else { 0.1 },
+        slice: None,
         isotropic,
         f0: Vec3::ONE,
         f90: 1.0,

@@ -12,6 +12,13 @@ pub(crate) const CAPS: u32 = 1 << 9;
 /// A flat light with a texture.
 pub(crate) const TEXTURED: u32 = 1 << 10;
 
+/// Where a surface point's lobe is looked up: in the anisotropic table,
+pub(crate) const ANISOTROPIC_TABLE: u32 = 0;
+/// in the isotropic one,
+pub(crate) const ISOTROPIC_TABLE: u32 = 1;
+/// or, from here on, in a baked slice.
+pub(crate) const FIRST_SLICE: u32 = 2;
+
 /// What stands for a mapping in a shader; the WGSL constants are generated from it.
 pub(crate) fn mapping_code(mapping: Mapping) -> u32 {
     match mapping {
@@ -52,4 +59,13 @@ pub(crate) fn light_constants() -> String {
     text.push_str(&format!("const LIGHT_TWO_SIDED: u32 = {TWO_SIDED}u;\nconst LIGHT_CAPS: u32 = {CAPS}u;\n"));
     text.push_str(&format!("const LIGHT_TEXTURED: u32 = {TEXTURED}u;\n"));
     text
+}
+
+/// The module `table_constants`: how a surface point says where its lobe is looked up.
+pub(crate) fn table_constants() -> String {
+    format!(
+        "// Where a surface point's lobe is looked up; generated. No bindings.\n\n\
+         const TABLE_ANISOTROPIC: u32 = {ANISOTROPIC_TABLE}u;\nconst TABLE_ISOTROPIC: u32 = {ISOTROPIC_TABLE}u;\n\
+         const TABLE_FIRST_SLICE: u32 = {FIRST_SLICE}u;\n"
+    )
 }

@@ -65,6 +65,22 @@ pub enum GpuError {
         /// Which table.
         table: &'static str,
     },
+    /// A point or query looks into a slice that is not there, or that was baked for other widths.
+    #[error("{item} {index} looks into slice {slice}, which is not there or was baked for other widths")]
+    WrongSlice {
+        /// What looks.
+        item: &'static str,
+        /// Its index.
+        index: usize,
+        /// The slice.
+        slice: u32,
+    },
+    /// Slices are baked of anisotropic tables alone.
+    #[error("slices are baked of an anisotropic table; this one is isotropic")]
+    NotAnisotropic,
+    /// A table could not be looked into.
+    #[error(transparent)]
+    Table(#[from] ltc_table::TableError),
     /// An isotropic table or material was asked for an anisotropic lobe.
     #[error(
         "{item} {index} is isotropic, but has alpha_x = {alpha_x}, alpha_y = {alpha_y}: they must be equal"

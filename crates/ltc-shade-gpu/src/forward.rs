@@ -9,8 +9,8 @@ use crate::compute::{compile, read_back};
 use crate::layout::ForwardLayout;
 use crate::light::EncodedLights;
 use crate::modules::Program;
-use crate::table_textures::{textured_group, textured_layout};
-use crate::{AreaLight, Gpu, GpuError, LightTextures, SurfacePoint, Tables};
+use crate::table_bindings::TableBindings;
+use crate::{AreaLight, Gpu, GpuError, LightTextures, ShadingOptions, SurfacePoint, Tables};
 
 /// What is drawn into: four floats a pixel.
 const TARGET: TextureFormat = TextureFormat::Rgba32Float;
@@ -50,6 +50,7 @@ pub struct ForwardMaterial {
     pub alpha_x: f32,
     pub alpha_y: f32,
     pub isotropic: bool,
+    pub slice: Option<u32>,
     pub f0: Vec3,
     pub f90: f32,
     pub albedo: Vec3,
@@ -59,7 +60,7 @@ pub struct ForwardMaterial {
 #[derive(Debug)]
 pub struct Forward {
     pipeline: wgpu::RenderPipeline,
-    tables: BindGroupLayout,
+    tables: TableBindings,
     inputs: BindGroupLayout,
     textures: Option<LightTextures>,
 }
@@ -70,24 +71,20 @@ impl Forward {
     /// # Errors
     /// [`GpuError::Device`].
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Self::compiled(gpu, Program::Forward(gpu.filtering()), None)
+        Self::with(gpu, ShadingOptions::default())
     }
 
-    /// As [`crate::Shader::with_textures`].
+    /// As [`crate::Shader::with`].
     ///
     /// # Errors
     /// [`GpuError::Device`].
-    pub fn with_textures(gpu: &Gpu, textures: LightTextures) -> Result<Self, GpuError> {
-        Self::compiled(gpu, Program::ForwardTextured(gpu.filtering()), Some(textures))
-    }
-
-    fn compiled(gpu: &Gpu, program: Program, textures: Option<LightTextures>) -> Result<Self, GpuError> {
-        let module = compile(gpu, program)?;
-        let tables = textured_layout(gpu, textures.is_some())?;
+    pub fn with(gpu: &Gpu, options: ShadingOptions) -> Result<Self, GpuError> {
+        let module = compile(gpu, Program::Forward(options.shading(gpu)))?;
+        let tables = TableBindings::new(gpu, options.extras())?;
         gpu.checked(|| {
             let inputs = input_layout(gpu.device());
-            let pipeline = pipeline(gpu.device(), &module, &[Some(&tables), Some(&inputs)]);
-            Ok(Self { pipeline, tables: tables.clone(), inputs, textures })
+            let pipeline = pipeline(gpu.device(), &module, &[Some(tables.layout()), Some(&inputs)]);
+            Ok(Self { pipeline, tables, inputs, textures: options.textures })
         })
     }
 
@@ -107,9 +104,10 @@ impl Forward {
         lights: &[AreaLight],
     ) -> Result<Vec<[f32; 4]>, GpuError> {
         check_size(gpu, view)?;
+        let tables = self.tables.bound(tables);
         let uniform = uniform(view, material, lights.len(), tables)?;
         let lights = EncodedLights::of(lights, self.textures.as_ref())?;
-        let bound = textured_group(gpu, &self.tables, tables, self.textures.as_ref())?;
+        let bound = self.tables.bind(gpu, tables, self.textures.as_ref())?;
         let bytes = gpu.checked(|| {
             let inputs = self.bind_inputs(gpu, &uniform, &lights);
             let pixels = self.render(gpu, view, triangles, &bound, &inputs);
@@ -233,7 +231,7 @@ fn uniform(
     lights: usize,
     tables: Tables<'_>,
 ) -> Result<ForwardLayout, GpuError> {
-    let ForwardMaterial { alpha_x, alpha_y, isotropic, f0, f90, albedo } = *material;
+    let ForwardMaterial { alpha_x, alpha_y, isotropic, slice, f0, f90, albedo } = *material;
     let point = SurfacePoint {
         position: view.eye,
         normal: Vec3::Z,
@@ -242,6 +240,7 @@ fn uniform(
         alpha_x,
         alpha_y,
         isotropic,
+        slice,
         f0,
         f90,
         albedo,
@@ -254,7 +253,7 @@ fn uniform(
         f0: checked.f0,
         f90: checked.f90,
         albedo: checked.albedo,
-        isotropic: checked.isotropic,
+        table: checked.table,
         alpha_x: checked.alpha_x,
         alpha_y: checked.alpha_y,
         unused: [0; 2],

@@ -67,6 +67,17 @@ pub(crate) struct LookupLayout {
     pub unused: [u32; 2],
 }
 
+/// `BakedJob`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct BakedLayout {
+    pub wo: [f32; 3],
+    pub alpha_x: f32,
+    pub alpha_y: f32,
+    pub slice: u32,
+    pub unused: [u32; 2],
+}
+
 /// `SurfacePoint`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -76,7 +87,7 @@ pub(crate) struct SurfaceLayout {
     pub normal: [f32; 3],
     pub alpha_y: f32,
     pub tangent: [f32; 3],
-    pub isotropic: u32,
+    pub table: u32,
     pub wo: [f32; 3],
     pub f90: f32,
     pub f0: [f32; 3],
@@ -120,7 +131,7 @@ pub(crate) struct ForwardLayout {
     pub f0: [f32; 3],
     pub f90: f32,
     pub albedo: [f32; 3],
-    pub isotropic: u32,
+    pub table: u32,
     pub alpha_x: f32,
     pub alpha_y: f32,
     pub unused: [u32; 2],
@@ -131,6 +142,7 @@ const _: () = {
     assert!(size_of::<AxesUniform>() == 64);
     assert!(size_of::<IntegrateLayout>() == 128);
     assert!(size_of::<LookupLayout>() == 32);
+    assert!(size_of::<BakedLayout>() == 32);
     assert!(size_of::<SurfaceLayout>() == 96);
     assert!(size_of::<LightLayout>() == 80);
 };

@@ -37,6 +37,8 @@
 //! ```
 
 #[cfg(feature = "device")]
+mod baked;
+#[cfg(feature = "device")]
 mod compute;
 mod constants;
 #[cfg(feature = "device")]
@@ -70,6 +72,8 @@ mod shade;
 #[cfg(feature = "device")]
 mod surface;
 #[cfg(feature = "device")]
+mod table_bindings;
+#[cfg(feature = "device")]
 mod table_textures;
 mod texture_atlas;
 #[cfg(feature = "device")]
@@ -77,6 +81,8 @@ mod textured;
 #[cfg(feature = "device")]
 pub mod timing;
 
+#[cfg(feature = "device")]
+pub use baked::BakedSlices;
 #[cfg(feature = "device")]
 pub use device::{Gpu, GpuInfo, GpuOptions, Texels};
 #[cfg(feature = "device")]
@@ -93,12 +99,12 @@ pub use light::{AreaLight, LightShape};
 #[cfg(feature = "device")]
 pub use light_textures::{LightTexture, LightTextures};
 #[cfg(feature = "device")]
-pub use lookup::{LookupResult, Lookups};
+pub use lookup::{BakedLookups, BakedQuery, LookupResult, Lookups};
 #[cfg(feature = "device")]
 pub use probe::{Finding, ProbeReport, Verdict, probe};
 pub use request::{Feature, LightKind, ShaderRequest, UnknownName};
 #[cfg(feature = "device")]
-pub use shade::Shader;
+pub use shade::{Shader, ShadingOptions};
 #[cfg(feature = "device")]
 pub use surface::SurfacePoint;
 #[cfg(feature = "device")]

@@ -1,13 +1,11 @@
 //! Batches of table lookups.
 
-use ltc_table::{Kind, Query};
-use wgpu::BindGroupLayout;
-
 use crate::compute::{Batch, Kernel, compile};
-use crate::layout::LookupLayout;
+use crate::layout::{BakedLayout, LookupLayout};
 use crate::modules::Program;
-use crate::table_textures::{bind_group, bind_group_layout};
-use crate::{Gpu, GpuError, TableTextures, Tables};
+use crate::table_bindings::{Extras, TableBindings};
+use crate::{BakedSlices, Gpu, GpuError, TableTextures, Tables};
+use ltc_table::{Kind, Query};
 
 /// Queries that go to the device at once.
 const CHUNK: usize = 1 << 18;
@@ -32,7 +30,7 @@ pub struct LookupResult {
 #[derive(Debug)]
 pub struct Lookups {
     kernel: Kernel,
-    tables: BindGroupLayout,
+    tables: TableBindings,
 }
 
 impl Lookups {
@@ -42,8 +40,8 @@ impl Lookups {
     /// [`GpuError::Device`].
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let module = compile(gpu, Program::Lookup(gpu.filtering()))?;
-        let tables = bind_group_layout(gpu)?;
-        Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(&tables), 1)?, tables })
+        let tables = TableBindings::new(gpu, Extras::default())?;
+        Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(tables.layout()), 1)?, tables })
     }
 
     /// One result for each query.
@@ -64,26 +62,90 @@ impl Lookups {
             .map(|(index, query)| encode(kind, index, query))
             .collect::<Result<Vec<_>, _>>()?;
         let tables = match kind {
-            Kind::Isotropic => Tables { isotropic: Some(table), anisotropic: None },
-            Kind::Anisotropic => Tables { isotropic: None, anisotropic: Some(table) },
+            Kind::Isotropic => Tables { isotropic: Some(table), ..Tables::default() },
+            Kind::Anisotropic => Tables { anisotropic: Some(table), ..Tables::default() },
         };
-        let bound = bind_group(gpu, &self.tables, tables)?;
-        let mut results = Vec::with_capacity(queries.len());
-        for chunk in jobs.chunks(CHUNK) {
-            let batch = Batch {
-                item: "query",
-                first: results.len(),
-                items: chunk.len(),
-                counts: [chunk.len() as u32, 0, 0, 0],
-                inputs: &[bytemuck::cast_slice(chunk)],
-                floats_each: FLOATS,
-                tables: Some(&bound),
-            };
-            let floats = self.kernel.run(gpu, &batch)?;
-            results.extend(floats.as_chunks::<FLOATS>().0.iter().map(decode));
-        }
-        Ok(results)
+        let bound = self.tables.bind(gpu, tables, None)?;
+        in_chunks(gpu, &self.kernel, &jobs, &bound)
     }
+}
+
+/// A query of a slice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BakedQuery {
+    /// The slice.
+    pub slice: u32,
+    /// Polar angle of the view, [0, π/2].
+    pub theta: f64,
+    /// Azimuth of the view, any finite angle.
+    pub phi: f64,
+}
+
+/// The pipeline that looks into baked slices, by the functions that shading uses.
+#[derive(Debug)]
+pub struct BakedLookups {
+    kernel: Kernel,
+    tables: TableBindings,
+}
+
+impl BakedLookups {
+    /// Compiles the pipeline.
+    ///
+    /// # Errors
+    /// [`GpuError::Device`].
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        let module = compile(gpu, Program::LookupBaked(gpu.filtering()))?;
+        let tables = TableBindings::new(gpu, Extras { baked: true, ..Extras::default() })?;
+        Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(tables.layout()), 1)?, tables })
+    }
+
+    /// One result for each query.
+    ///
+    /// # Errors
+    /// [`GpuError::Input`] with the index of the first invalid query, [`GpuError::WrongSlice`] where a slice is not there; then
+    /// nothing is run.
+    pub fn lookup(
+        &self,
+        gpu: &Gpu,
+        slices: &BakedSlices,
+        queries: &[BakedQuery],
+    ) -> Result<Vec<LookupResult>, GpuError> {
+        let job = |(index, query): (usize, &BakedQuery)| {
+            let BakedQuery { slice, theta, phi } = *query;
+            let wrong = GpuError::WrongSlice { item: "query", index, slice };
+            let [alpha_x, alpha_y] = slices.widths(slice).ok_or(wrong)?;
+            let query = Query { theta, phi, alpha_x: f64::from(alpha_x), alpha_y: f64::from(alpha_y) };
+            query.validate().map_err(GpuError::input("query", index))?;
+            Ok(BakedLayout { wo: wo(&query), alpha_x, alpha_y, slice, unused: [0; 2] })
+        };
+        let jobs = queries.iter().enumerate().map(job).collect::<Result<Vec<_>, GpuError>>()?;
+        let bound = self.tables.bind(gpu, Tables { baked: Some(slices), ..Tables::default() }, None)?;
+        in_chunks(gpu, &self.kernel, &jobs, &bound)
+    }
+}
+
+/// Runs the jobs, a chunk of them at a time.
+fn in_chunks<Job: bytemuck::Pod>(
+    gpu: &Gpu,
+    kernel: &Kernel,
+    jobs: &[Job],
+    tables: &wgpu::BindGroup,
+) -> Result<Vec<LookupResult>, GpuError> {
+    let mut results = Vec::with_capacity(jobs.len());
+    for chunk in jobs.chunks(CHUNK) {
+        let batch = Batch {
+            item: "query",
+            first: results.len(),
+            items: chunk.len(),
+            counts: [chunk.len() as u32, 0, 0, 0],
+            inputs: &[bytemuck::cast_slice(chunk)],
+            floats_each: FLOATS,
+            tables: Some(tables),
+        };
+        let floats = kernel.run(gpu, &batch)?;
+        results.extend(floats.as_chunks::<FLOATS>().0.iter().map(decode));
+    }
+    Ok(results)
 }
 
 fn encode(kind: Kind, index: usize, query: &Query) -> Result<LookupLayout, GpuError> {
@@ -92,15 +154,19 @@ fn encode(kind: Kind, index: usize, query: &Query) -> Result<LookupLayout, GpuEr
         let Query { alpha_x, alpha_y, .. } = *query;
         return Err(GpuError::NotIsotropic { item: "query", index, alpha_x, alpha_y });
     }
-    let sin = query.theta.sin().max(SMALLEST_SINE);
-    let (sin_phi, cos_phi) = query.phi.sin_cos();
     Ok(LookupLayout {
-        wo: [sin * cos_phi, sin * sin_phi, query.theta.cos().max(0.0)].map(|x| x as f32),
+        wo: wo(query),
         alpha_x: alpha.x() as f32,
         alpha_y: alpha.y() as f32,
         isotropic: u32::from(kind == Kind::Isotropic),
         unused: [0; 2],
     })
+}
+
+fn wo(query: &Query) -> [f32; 3] {
+    let sin = query.theta.sin().max(SMALLEST_SINE);
+    let (sin_phi, cos_phi) = query.phi.sin_cos();
+    [sin * cos_phi, sin * sin_phi, query.theta.cos().max(0.0)].map(|x| x as f32)
 }
 
 fn decode(floats: &[f32; FLOATS]) -> LookupResult {

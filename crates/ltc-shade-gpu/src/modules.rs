@@ -4,7 +4,7 @@
 //! are file names in `src/shaders/`. Functions and types of the pure modules begin with `ltc_` and `Ltc`.
 
 use crate::Filtering;
-use crate::constants::{constants, light_constants};
+use crate::constants::{constants, light_constants, table_constants};
 
 /// One WGSL file.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,7 @@ macro_rules! module {
     };
 }
 
-/// All modules that are files. Beside them there are `constants` and `light_constants`, generated from Rust, and `edge`,
+/// All modules that are files. Beside them there are `constants`, `light_constants` and `table_constants`, generated from Rust, and `edge`,
 /// which stands for `edge_exact` or `edge_rational`.
 pub const MODULES: &[Module] = &[
     module!(true, "math", []),
@@ -60,16 +60,24 @@ pub const MODULES: &[Module] = &[
     module!(true, "material", ["constants"]),
     module!(true, "table", ["math", "constants"]),
     module!(true, "isotropic", ["table"]),
-    module!(true, "anisotropic", ["table"]),
+    module!(true, "fold", ["math", "table"]),
+    module!(true, "anisotropic", ["table", "fold"]),
+    module!(true, "baked", ["table", "fold"]),
     module!(true, "fetch_exact_isotropic", ["isotropic"]),
     module!(true, "fetch_exact_anisotropic", ["anisotropic"]),
+    module!(true, "fetch_exact_baked", ["baked"]),
     module!(true, "fetch_hardware_isotropic", ["isotropic"]),
     module!(true, "fetch_hardware_anisotropic", ["anisotropic"]),
+    module!(true, "fetch_hardware_baked", ["baked"]),
     module!(true, "fetch_function_isotropic", ["isotropic"]),
     module!(true, "fetch_function_anisotropic", ["anisotropic"]),
+    module!(true, "fetch_function_baked", ["baked"]),
     module!(false, "tables_buffer", ["fetch_function_isotropic", "fetch_function_anisotropic"]),
     module!(false, "tables_exact", ["fetch_exact_isotropic", "fetch_exact_anisotropic"]),
     module!(false, "tables_hardware", ["fetch_hardware_isotropic", "fetch_hardware_anisotropic"]),
+    module!(false, "baked_buffer", ["fetch_function_baked", "tables_buffer"]),
+    module!(false, "baked_exact", ["fetch_exact_baked", "tables_exact"]),
+    module!(false, "baked_hardware", ["fetch_hardware_baked", "tables_hardware"]),
     module!(
         false,
         "lights",
@@ -90,87 +98,91 @@ pub const MODULES: &[Module] = &[
     module!(false, "integrate_main", ["lights"]),
     module!(false, "integrate_textured_main", ["light_textures"]),
     module!(false, "lookup_main", ["table"]),
-    module!(false, "shade", ["lights", "fresnel", "table"]),
+    module!(false, "lookup_baked_main", ["table"]),
+    module!(false, "shade", ["lights", "fresnel", "table", "table_constants"]),
     module!(false, "shade_main", ["shade"]),
     module!(false, "forward_main", ["shade"]),
 ];
 
 /// What the programs of this crate are composed with.
 const OWN_SYMBOLS: &[&str] = &["surface_horizon", "cosine_horizon", "two_sided"];
-/// The same with textures of lights.
-const TEXTURED_SYMBOLS: &[&str] = &["surface_horizon", "cosine_horizon", "two_sided", "light_textures"];
+
+/// What a shading program is composed of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shading {
+    /// How tables are interpolated.
+    pub filtering: Filtering,
+    /// Whether lights with textures are among the lights.
+    pub textured: bool,
+    /// Whether points may look into baked slices.
+    pub baked: bool,
+}
 
 /// What can be run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Program {
     /// Lights under lobes: entry point `main`.
     Integrate,
-    /// A batch of lookups: entry point `main`.
-    Lookup(Filtering),
-    /// Deferred shading: entry point `main`.
-    Shade(Filtering),
-    /// Forward shading: entry points `vertex_main` and `fragment_main`.
-    Forward(Filtering),
     /// Textured lights under lobes: entry point `main`.
     IntegrateTextured,
-    /// As `Shade`, for lights with textures among others.
-    ShadeTextured(Filtering),
-    /// As `Forward`, for lights with textures among others.
-    ForwardTextured(Filtering),
+    /// A batch of lookups: entry point `main`.
+    Lookup(Filtering),
+    /// A batch of lookups in baked slices: entry point `main`.
+    LookupBaked(Filtering),
+    /// Deferred shading: entry point `main`.
+    Shade(Shading),
+    /// Forward shading: entry points `vertex_main` and `fragment_main`.
+    Forward(Shading),
 }
 
 impl Program {
     /// Every program there is.
-    pub const ALL: [Self; 17] = [
-        Self::Integrate,
-        Self::Lookup(Filtering::Exact),
-        Self::Lookup(Filtering::Hardware),
-        Self::Shade(Filtering::Exact),
-        Self::Shade(Filtering::Hardware),
-        Self::Forward(Filtering::Exact),
-        Self::Forward(Filtering::Hardware),
-        Self::Lookup(Filtering::Buffer),
-        Self::Shade(Filtering::Buffer),
-        Self::Forward(Filtering::Buffer),
-        Self::IntegrateTextured,
-        Self::ShadeTextured(Filtering::Exact),
-        Self::ShadeTextured(Filtering::Hardware),
-        Self::ShadeTextured(Filtering::Buffer),
-        Self::ForwardTextured(Filtering::Exact),
-        Self::ForwardTextured(Filtering::Hardware),
-        Self::ForwardTextured(Filtering::Buffer),
-    ];
-
-    /// The modules to begin with; the rest follows from what they need.
-    pub fn roots(self) -> &'static [&'static str] {
-        match self {
-            Self::Integrate => &["integrate_main"],
-            Self::Lookup(Filtering::Buffer) => &["tables_buffer", "lookup_main"],
-            Self::Shade(Filtering::Buffer) => &["tables_buffer", "shade_main"],
-            Self::Forward(Filtering::Buffer) => &["tables_buffer", "forward_main"],
-            Self::Lookup(Filtering::Exact) => &["tables_exact", "lookup_main"],
-            Self::Lookup(Filtering::Hardware) => &["tables_hardware", "lookup_main"],
-            Self::Shade(Filtering::Exact) => &["tables_exact", "shade_main"],
-            Self::Shade(Filtering::Hardware) => &["tables_hardware", "shade_main"],
-            Self::Forward(Filtering::Exact) => &["tables_exact", "forward_main"],
-            Self::Forward(Filtering::Hardware) => &["tables_hardware", "forward_main"],
-            Self::IntegrateTextured => &["integrate_textured_main"],
-            Self::ShadeTextured(Filtering::Buffer) => &["tables_buffer", "light_textures", "shade_main"],
-            Self::ShadeTextured(Filtering::Exact) => &["tables_exact", "light_textures", "shade_main"],
-            Self::ShadeTextured(Filtering::Hardware) => &["tables_hardware", "light_textures", "shade_main"],
-            Self::ForwardTextured(Filtering::Buffer) => &["tables_buffer", "light_textures", "forward_main"],
-            Self::ForwardTextured(Filtering::Exact) => &["tables_exact", "light_textures", "forward_main"],
-            Self::ForwardTextured(Filtering::Hardware) => {
-                &["tables_hardware", "light_textures", "forward_main"]
+    pub fn all() -> Vec<Self> {
+        let mut all = vec![Self::Integrate, Self::IntegrateTextured];
+        for filtering in [Filtering::Exact, Filtering::Hardware, Filtering::Buffer] {
+            all.extend([Self::Lookup(filtering), Self::LookupBaked(filtering)]);
+            for choice in 0..4 {
+                let shading = Shading { filtering, textured: choice & 1 != 0, baked: choice & 2 != 0 };
+                all.extend([Self::Shade(shading), Self::Forward(shading)]);
             }
         }
+        all
+    }
+
+    /// The modules to begin with; the rest follows from what they need.
+    pub fn roots(self) -> Vec<&'static str> {
+        let (main, shading) = match self {
+            Self::Integrate => return vec!["integrate_main"],
+            Self::IntegrateTextured => return vec!["integrate_textured_main"],
+            Self::Lookup(filtering) => ("lookup_main", Shading { filtering, textured: false, baked: false }),
+            Self::LookupBaked(filtering) => {
+                ("lookup_baked_main", Shading { filtering, textured: false, baked: true })
+            }
+            Self::Shade(shading) => ("shade_main", shading),
+            Self::Forward(shading) => ("forward_main", shading),
+        };
+        let (tables, baked) = match shading.filtering {
+            Filtering::Exact => ("tables_exact", "baked_exact"),
+            Filtering::Hardware => ("tables_hardware", "baked_hardware"),
+            Filtering::Buffer => ("tables_buffer", "baked_buffer"),
+        };
+        let mut roots = vec![if shading.baked { baked } else { tables }];
+        roots.extend(shading.textured.then_some("light_textures"));
+        roots.push(main);
+        roots
     }
 
     /// The whole WGSL text.
     pub fn source(self) -> String {
-        let textured =
-            matches!(self, Self::IntegrateTextured | Self::ShadeTextured(_) | Self::ForwardTextured(_));
-        compose(self.roots(), if textured { TEXTURED_SYMBOLS } else { OWN_SYMBOLS })
+        let (textured, baked) = match self {
+            Self::Shade(shading) | Self::Forward(shading) => (shading.textured, shading.baked),
+            Self::IntegrateTextured => (true, false),
+            Self::Integrate | Self::Lookup(_) | Self::LookupBaked(_) => (false, false),
+        };
+        let mut symbols = OWN_SYMBOLS.to_vec();
+        symbols.extend(textured.then_some("light_textures"));
+        symbols.extend(baked.then_some("baked"));
+        compose(&self.roots(), &symbols)
     }
 }
 
@@ -210,12 +222,13 @@ fn gather<'a>(name: &'a str, symbols: &[&str], chosen: &mut Vec<&'a str>) {
     chosen.push(name);
 }
 
-const GENERATED: [&str; 2] = ["constants", "light_constants"];
+const GENERATED: [&str; 3] = ["constants", "light_constants", "table_constants"];
 
 fn text(name: &str, symbols: &[&str]) -> String {
     match name {
         "constants" => constants(),
         "light_constants" => light_constants(),
+        "table_constants" => table_constants(),
         _ => MODULES.iter().find(|m| m.name == name).map_or_else(String::new, |m| select(m.source, symbols)),
     }
 }
@@ -263,10 +276,10 @@ mod tests {
 
     #[test]
     fn every_program_is_valid_and_has_its_entry_points() {
-        for program in Program::ALL {
+        for program in Program::all() {
             let module = validate(&program.source()).unwrap_or_else(|e| panic!("{program:?}: {e}"));
             let names: Vec<_> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
-            let forward = matches!(program, Program::Forward(_) | Program::ForwardTextured(_));
+            let forward = matches!(program, Program::Forward(_));
             let expected = if forward { vec!["vertex_main", "fragment_main"] } else { vec!["main"] };
             assert_eq!(names, expected, "{program:?}");
         }
@@ -275,7 +288,8 @@ mod tests {
     /// What a host brings where a table comes out of a function.
     const HOST: &str = "
         fn ltc_isotropic_texel(entry: u32, group: u32) -> vec4f { return vec4f(f32(entry), f32(group), 0.0, 0.0); }
-        fn ltc_anisotropic_texel(entry: u32, group: u32) -> vec4f { return vec4f(f32(entry), f32(group), 0.0, 0.0); }";
+        fn ltc_anisotropic_texel(entry: u32, group: u32) -> vec4f { return vec4f(f32(entry), f32(group), 0.0, 0.0); }
+        fn ltc_baked_texel(entry: u32, group: u32) -> vec4f { return vec4f(f32(entry), f32(group), 0.0, 0.0); }";
 
     fn assert_pure(source: &str, what: &str) {
         let ir = validate(&format!("{source}{HOST}")).unwrap_or_else(|e| panic!("{what}: {e}"));
@@ -331,7 +345,7 @@ mod tests {
     #[test]
     fn no_array_of_vertices_is_indexed() {
         // A function-local array would be indexed dynamically and spilled to memory by most drivers.
-        for program in Program::ALL {
+        for program in Program::all() {
             let ir = validate(&program.source()).unwrap();
             let is_array = |ty| matches!(ir.types[ty].inner, naga::TypeInner::Array { .. });
             let all = ir.functions.iter().map(|f| f.1).chain(ir.entry_points.iter().map(|e| &e.function));

@@ -74,10 +74,13 @@ pub enum Feature {
     Isotropic,
     /// Lookup in a table for anisotropic materials.
     Anisotropic,
+    /// Lookup in slices of a table for anisotropic materials, each baked for one pair of widths: a quarter of the fetches, for
+    /// materials whose widths do not change from point to point.
+    Baked,
     /// Lookups by the texture unit, in fewer fetches and to its precision; without, by the shader in full. Of no effect with
     /// [`Feature::FunctionTables`].
     HardwareFiltering,
-    /// Lookups call `ltc_isotropic_texel` or `ltc_anisotropic_texel`, which the host defines: over a storage buffer or
+    /// Lookups call `ltc_isotropic_texel`, `ltc_anisotropic_texel` or `ltc_baked_texel`, which the host defines: over a storage buffer or
     /// whatever else holds a table where there are no float textures.
     FunctionTables,
     /// Lights are cut by the surface's horizon. Without, those below it leak into tilted lobes.
@@ -100,9 +103,10 @@ pub enum Feature {
 
 impl Feature {
     /// Every feature there is.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Isotropic,
         Self::Anisotropic,
+        Self::Baked,
         Self::HardwareFiltering,
         Self::FunctionTables,
         Self::SurfaceHorizon,
@@ -115,11 +119,15 @@ impl Feature {
         Self::Frame,
     ];
 
+    /// Those that look into a table.
+    pub const LOOKUPS: [Self; 3] = [Self::Isotropic, Self::Anisotropic, Self::Baked];
+
     /// The name in commands.
     pub fn name(self) -> &'static str {
         match self {
             Self::Isotropic => "isotropic",
             Self::Anisotropic => "anisotropic",
+            Self::Baked => "baked",
             Self::HardwareFiltering => "hardware-filtering",
             Self::FunctionTables => "function-tables",
             Self::SurfaceHorizon => "surface-horizon",
@@ -140,6 +148,7 @@ impl Feature {
         match self {
             Self::Isotropic => "lookup in a table for isotropic materials",
             Self::Anisotropic => "lookup in a table for anisotropic materials",
+            Self::Baked => "lookup in slices of an anisotropic table, each baked for one pair of widths",
             Self::HardwareFiltering => "lookups by the texture unit, faster and to its precision",
             Self::FunctionTables => "lookups call a function of yours for each texel, over any memory",
             Self::SurfaceHorizon => "cuts lights at the surface's horizon: nothing leaks from below",
@@ -234,6 +243,11 @@ impl ShaderRequest {
         self.features.contains(&feature)
     }
 
+    /// Whether it looks into a table.
+    pub(crate) fn looks_up(&self) -> bool {
+        Feature::LOOKUPS.into_iter().any(|feature| self.has(feature))
+    }
+
     /// Whether it brings no function at all.
     pub fn is_empty(&self) -> bool {
         self.roots().is_empty()
@@ -256,6 +270,7 @@ impl ShaderRequest {
                 Feature::Anisotropic,
                 ["fetch_exact_anisotropic", "fetch_hardware_anisotropic", "fetch_function_anisotropic"],
             ),
+            (Feature::Baked, ["fetch_exact_baked", "fetch_hardware_baked", "fetch_function_baked"]),
         ] {
             if self.has(feature) {
                 roots.push(fetches[way]);
@@ -308,7 +323,7 @@ impl ShaderRequest {
             }
         }
         for tables in
-            [&[Feature::Isotropic][..], &[Feature::Anisotropic], &[Feature::Isotropic, Feature::Anisotropic]]
+            [&[Feature::Isotropic][..], &[Feature::Anisotropic], &[Feature::Baked], &Feature::LOOKUPS]
         {
             list.push(Self::new([], tables.iter().copied()));
             for way in [Feature::HardwareFiltering, Feature::FunctionTables] {

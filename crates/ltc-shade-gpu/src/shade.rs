@@ -1,11 +1,9 @@
 //! Deferred shading.
 
-use wgpu::BindGroupLayout;
-
 use crate::compute::{Batch, Kernel, compile};
 use crate::light::EncodedLights;
-use crate::modules::Program;
-use crate::table_textures::{textured_group, textured_layout};
+use crate::modules::{Program, Shading};
+use crate::table_bindings::{Extras, TableBindings};
 use crate::{AreaLight, Gpu, GpuError, LightTextures, SurfacePoint, Tables};
 
 /// Points that go to the device at once: 12 MiB of G-buffer.
@@ -20,8 +18,29 @@ const CHUNK: usize = 1 << 17;
 #[derive(Debug)]
 pub struct Shader {
     kernel: Kernel,
-    tables: BindGroupLayout,
+    tables: TableBindings,
     textures: Option<LightTextures>,
+}
+
+/// What a shading pipeline is to have beyond the two tables and lights of one colour: nothing else is compiled.
+#[derive(Debug, Default)]
+pub struct ShadingOptions {
+    /// The textures of lights that have some: their radiance is multiplied with the colour that the lobe sees of the texture
+    /// ([`ltc_core::TexturedPolygon`] has the formula and its error).
+    pub textures: Option<LightTextures>,
+    /// Whether points may look into [`crate::BakedSlices`].
+    pub baked: bool,
+}
+
+impl ShadingOptions {
+    pub(crate) fn extras(&self) -> Extras {
+        Extras { textured: self.textures.is_some(), baked: self.baked }
+    }
+
+    pub(crate) fn shading(&self, gpu: &Gpu) -> Shading {
+        let Extras { textured, baked } = self.extras();
+        Shading { filtering: gpu.filtering(), textured, baked }
+    }
 }
 
 impl Shader {
@@ -30,29 +49,25 @@ impl Shader {
     /// # Errors
     /// [`GpuError::Device`].
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Self::compiled(gpu, Program::Shade(gpu.filtering()), None)
+        Self::with(gpu, ShadingOptions::default())
     }
 
-    /// Compiles the pipeline for lights of which some have these textures: their radiance is multiplied with the colour that the
-    /// lobe sees of the texture ([`ltc_core::TexturedPolygon`] has the formula and its error).
+    /// Compiles the pipeline with more than lights of one colour and the two tables.
     ///
     /// # Errors
     /// [`GpuError::Device`].
-    pub fn with_textures(gpu: &Gpu, textures: LightTextures) -> Result<Self, GpuError> {
-        Self::compiled(gpu, Program::ShadeTextured(gpu.filtering()), Some(textures))
-    }
-
-    fn compiled(gpu: &Gpu, program: Program, textures: Option<LightTextures>) -> Result<Self, GpuError> {
-        let module = compile(gpu, program)?;
-        let tables = textured_layout(gpu, textures.is_some())?;
-        Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(&tables), 3)?, tables, textures })
+    pub fn with(gpu: &Gpu, options: ShadingOptions) -> Result<Self, GpuError> {
+        let module = compile(gpu, Program::Shade(options.shading(gpu)))?;
+        let tables = TableBindings::new(gpu, options.extras())?;
+        let kernel = Kernel::new(gpu, &module, "main", Some(tables.layout()), 3)?;
+        Ok(Self { kernel, tables, textures: options.textures })
     }
 
     /// Radiance towards the eye of each point, linear RGB, in the unit of the lights' radiance.
     ///
     /// # Errors
     /// [`GpuError::Input`] and [`GpuError::NotIsotropic`] with the index of the first invalid point or light,
-    /// [`GpuError::MissingTable`], [`GpuError::MissingTexture`]; then nothing is run.
+    /// [`GpuError::MissingTable`], [`GpuError::WrongSlice`], [`GpuError::MissingTexture`]; then nothing is run.
     pub fn shade(
         &self,
         gpu: &Gpu,
@@ -62,9 +77,10 @@ impl Shader {
     ) -> Result<Vec<[f32; 3]>, GpuError> {
         let EncodedLights { records: light_buffer, vertices } =
             EncodedLights::of(lights, self.textures.as_ref())?;
+        let tables = self.tables.bound(tables);
         let point_buffer =
             points.iter().enumerate().map(|(i, p)| p.encode(i, tables)).collect::<Result<Vec<_>, _>>()?;
-        let bound = textured_group(gpu, &self.tables, tables, self.textures.as_ref())?;
+        let bound = self.tables.bind(gpu, tables, self.textures.as_ref())?;
         let mut radiance = Vec::with_capacity(points.len());
         for chunk in point_buffer.chunks(CHUNK) {
             let batch = Batch {

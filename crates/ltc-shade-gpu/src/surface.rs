@@ -3,6 +3,7 @@
 use glam::Vec3;
 use ltc_core::{Alpha, InputError, Vector, check_range};
 
+use crate::constants::{ANISOTROPIC_TABLE, FIRST_SLICE, ISOTROPIC_TABLE};
 use crate::layout::SurfaceLayout;
 use crate::{GpuError, Tables};
 
@@ -26,6 +27,9 @@ pub struct SurfacePoint {
     pub alpha_y: f32,
     /// Look into the isotropic table, if there is one. Then the widths must be equal.
     pub isotropic: bool,
+    /// Look into this slice of [`Tables::baked`], which must have been baked for these widths, by a pipeline that was compiled for
+    /// it ([`crate::ShadingOptions`]).
+    pub slice: Option<u32>,
     /// Specular reflectance (linear RGB) at normal incidence, in [0, 1].
     pub f0: Vec3,
     /// Specular reflectance at grazing incidence, in [0, 1].
@@ -36,22 +40,19 @@ pub struct SurfacePoint {
 
 impl SurfacePoint {
     pub(crate) fn encode(&self, index: usize, tables: Tables<'_>) -> Result<SurfaceLayout, GpuError> {
-        let isotropic = self.isotropic && tables.isotropic.is_some();
         if self.isotropic && self.alpha_x != self.alpha_y {
             let (alpha_x, alpha_y) = (f64::from(self.alpha_x), f64::from(self.alpha_y));
             return Err(GpuError::NotIsotropic { item: POINT, index, alpha_x, alpha_y });
         }
-        if !isotropic && tables.anisotropic.is_none() {
-            return Err(GpuError::MissingTable { item: POINT, index, table: "anisotropic" });
-        }
         let alpha = self.check().map_err(GpuError::input(POINT, index))?;
+        let table = self.table(index, tables, [alpha.x() as f32, alpha.y() as f32])?;
         Ok(SurfaceLayout {
             position: self.position.to_array(),
             alpha_x: alpha.x() as f32,
             normal: self.normal.to_array(),
             alpha_y: alpha.y() as f32,
             tangent: self.tangent.to_array(),
-            isotropic: u32::from(isotropic),
+            table,
             wo: self.wo.to_array(),
             f90: self.f90,
             f0: self.f0.to_array(),
@@ -59,6 +60,22 @@ impl SurfacePoint {
             albedo: self.albedo.to_array(),
             unused_1: 0.0,
         })
+    }
+
+    /// Where the shader looks its lobe up.
+    fn table(&self, index: usize, tables: Tables<'_>, widths: [f32; 2]) -> Result<u32, GpuError> {
+        let missing = |table| GpuError::MissingTable { item: POINT, index, table };
+        if let Some(slice) = self.slice {
+            let slices = tables.baked.ok_or_else(|| missing("baked"))?;
+            return match slices.widths(slice) {
+                Some(baked) if baked == widths => Ok(FIRST_SLICE + slice),
+                _ => Err(GpuError::WrongSlice { item: POINT, index, slice }),
+            };
+        }
+        if self.isotropic && tables.isotropic.is_some() {
+            return Ok(ISOTROPIC_TABLE);
+        }
+        tables.anisotropic.map(|_| ANISOTROPIC_TABLE).ok_or_else(|| missing("anisotropic"))
     }
 
     fn check(&self) -> Result<Alpha, InputError> {

@@ -1,12 +1,11 @@
 //! Tables as textures.
 
-use bytemuck::Zeroable;
 use ltc_table::{Kind, Precision, Table, ktx2};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
-use wgpu::{BindGroup, BindGroupLayout, ShaderStages, Texture, TextureDimension, TextureViewDimension};
+use wgpu::{Texture, TextureDimension, TextureViewDimension};
 
 use crate::layout::AxesUniform;
-use crate::{Filtering, Gpu, GpuError, LightTextures, Texels};
+use crate::{BakedSlices, Filtering, Gpu, GpuError, Texels};
 
 /// A table on the device: three RGBA groups in the layout of [`ltc_table::ktx2`], and its axes.
 #[derive(Debug)]
@@ -16,21 +15,21 @@ pub struct TableTextures {
     texels: Storage,
 }
 
-/// Where the texels are.
+/// Where texels are.
 #[derive(Debug)]
-enum Storage {
+pub(crate) enum Storage {
     Texture(Texture),
     Buffer(wgpu::Buffer),
 }
 
-/// What is bound of a table.
-enum View<'a> {
+/// What is bound of them.
+pub(crate) enum View<'a> {
     Texture(wgpu::TextureView),
     Buffer(&'a wgpu::Buffer),
 }
 
 impl View<'_> {
-    fn binding(&self) -> wgpu::BindingResource<'_> {
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
         match self {
             Self::Texture(view) => wgpu::BindingResource::TextureView(view),
             Self::Buffer(buffer) => buffer.as_entire_binding(),
@@ -45,6 +44,40 @@ pub struct Tables<'a> {
     pub isotropic: Option<&'a TableTextures>,
     /// For anisotropic materials.
     pub anisotropic: Option<&'a TableTextures>,
+    /// For materials that have a slice of their own.
+    pub baked: Option<&'a BakedSlices>,
+}
+
+impl Storage {
+    /// As tables of this kind are bound.
+    pub fn view(&self, kind: Kind) -> View<'_> {
+        match self {
+            Self::Buffer(buffer) => View::Buffer(buffer),
+            Self::Texture(texture) => View::Texture(texture.create_view(&wgpu::TextureViewDescriptor {
+                dimension: Some(view_dimension(kind)),
+                ..Default::default()
+            })),
+        }
+    }
+
+    /// Bytes of memory on the device.
+    pub fn bytes(&self) -> u64 {
+        match self {
+            Self::Buffer(buffer) => buffer.size(),
+            Self::Texture(texture) => {
+                let size = texture.size();
+                let count = size.width * size.height * size.depth_or_array_layers;
+                u64::from(count) * u64::from(texture.format().block_copy_size(None).unwrap_or(0))
+            }
+        }
+    }
+
+    /// What stands where nothing was given: one texel, never looked at.
+    pub fn placeholder(gpu: &Gpu, kind: Kind) -> Self {
+        let size = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: ktx2::GROUPS as u32 };
+        let bytes = [0; 16 * ktx2::GROUPS];
+        create(gpu, kind, size, &bytes[..4 * precision(gpu).bytes() * ktx2::GROUPS])
+    }
 }
 
 impl TableTextures {
@@ -78,37 +111,20 @@ impl TableTextures {
 
     /// Bytes of memory on the device.
     pub fn bytes(&self) -> u64 {
-        match &self.texels {
-            Storage::Buffer(buffer) => buffer.size(),
-            Storage::Texture(texture) => {
-                let size = texture.size();
-                let count = size.width * size.height * size.depth_or_array_layers;
-                u64::from(count) * u64::from(texture.format().block_copy_size(None).unwrap_or(0))
-            }
-        }
+        self.texels.bytes()
     }
 
-    /// What stands where no table was given: one texel, never looked at.
-    fn placeholder(gpu: &Gpu, kind: Kind) -> Self {
-        let size = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: ktx2::GROUPS as u32 };
-        let bytes = [0; 16 * ktx2::GROUPS];
-        let bytes = &bytes[..4 * precision(gpu).bytes() * ktx2::GROUPS];
-        Self { kind, axes: AxesUniform::zeroed(), texels: create(gpu, kind, size, bytes) }
+    pub(crate) fn axes(&self) -> AxesUniform {
+        self.axes
     }
 
-    fn view(&self) -> View<'_> {
-        match &self.texels {
-            Storage::Buffer(buffer) => View::Buffer(buffer),
-            Storage::Texture(texture) => View::Texture(texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(view_dimension(self.kind)),
-                ..Default::default()
-            })),
-        }
+    pub(crate) fn view(&self) -> View<'_> {
+        self.texels.view(self.kind)
     }
 }
 
 /// Storage buffers hold 32 bits.
-fn precision(gpu: &Gpu) -> Precision {
+pub(crate) fn precision(gpu: &Gpu) -> Precision {
     let texels = if gpu.filtering() == Filtering::Buffer { Texels::F32 } else { gpu.texels() };
     match texels {
         Texels::F32 => Precision::F32,
@@ -136,7 +152,7 @@ fn extent(table: &Table) -> wgpu::Extent3d {
     wgpu::Extent3d { width, height, depth_or_array_layers: (slices * ktx2::GROUPS) as u32 }
 }
 
-fn check_extent(gpu: &Gpu, kind: Kind, size: wgpu::Extent3d) -> Result<(), GpuError> {
+pub(crate) fn check_extent(gpu: &Gpu, kind: Kind, size: wgpu::Extent3d) -> Result<(), GpuError> {
     let limits = gpu.device().limits();
     let side = match kind {
         Kind::Isotropic => limits.max_texture_dimension_2d,
@@ -158,7 +174,7 @@ fn check_extent(gpu: &Gpu, kind: Kind, size: wgpu::Extent3d) -> Result<(), GpuEr
     Ok(())
 }
 
-fn create(gpu: &Gpu, kind: Kind, size: wgpu::Extent3d, bytes: &[u8]) -> Storage {
+pub(crate) fn create(gpu: &Gpu, kind: Kind, size: wgpu::Extent3d, bytes: &[u8]) -> Storage {
     if gpu.filtering() == Filtering::Buffer {
         let usage = wgpu::BufferUsages::STORAGE;
         let descriptor = BufferInitDescriptor { label: Some("ltc table"), contents: bytes, usage };
@@ -185,114 +201,9 @@ fn create(gpu: &Gpu, kind: Kind, size: wgpu::Extent3d, bytes: &[u8]) -> Storage 
     Storage::Texture(gpu.device().create_texture_with_data(gpu.queue(), &descriptor, order, bytes))
 }
 
-fn view_dimension(kind: Kind) -> TextureViewDimension {
+pub(crate) fn view_dimension(kind: Kind) -> TextureViewDimension {
     match kind {
         Kind::Isotropic => TextureViewDimension::D2Array,
         Kind::Anisotropic => TextureViewDimension::D3,
     }
-}
-
-/// The bindings of group 0, as `tables_exact.wgsl` and `tables_hardware.wgsl` have them.
-pub(crate) fn bind_group_layout(gpu: &Gpu) -> Result<BindGroupLayout, GpuError> {
-    textured_layout(gpu, false)
-}
-
-/// The same, with that of `light_textures.wgsl` if `textured`.
-pub(crate) fn textured_layout(gpu: &Gpu, textured: bool) -> Result<BindGroupLayout, GpuError> {
-    let hardware = gpu.filtering() == Filtering::Hardware;
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: ShaderStages::COMPUTE | ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
-    let uniform = wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
-    let texture = |kind| match gpu.filtering() {
-        Filtering::Buffer => wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only: true },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        Filtering::Exact | Filtering::Hardware => wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: hardware },
-            view_dimension: view_dimension(kind),
-            multisampled: false,
-        },
-    };
-    let mut entries = vec![
-        entry(0, uniform),
-        entry(1, texture(Kind::Isotropic)),
-        entry(2, uniform),
-        entry(3, texture(Kind::Anisotropic)),
-    ];
-    if hardware {
-        entries.push(entry(4, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)));
-    }
-    entries.extend(textured.then(LightTextures::layout_entry));
-    gpu.checked(|| {
-        let label = Some("ltc tables");
-        Ok(gpu
-            .device()
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries }))
-    })
-}
-
-/// Binds the tables that there are, and placeholders for the others.
-pub(crate) fn bind_group(
-    gpu: &Gpu,
-    layout: &BindGroupLayout,
-    tables: Tables<'_>,
-) -> Result<BindGroup, GpuError> {
-    textured_group(gpu, layout, tables, None)
-}
-
-/// The same, with the textures that [`textured_layout`] was made for.
-pub(crate) fn textured_group(
-    gpu: &Gpu,
-    layout: &BindGroupLayout,
-    tables: Tables<'_>,
-    textures: Option<&LightTextures>,
-) -> Result<BindGroup, GpuError> {
-    gpu.checked(|| {
-        let placeholders =
-            [Kind::Isotropic, Kind::Anisotropic].map(|kind| TableTextures::placeholder(gpu, kind));
-        let isotropic = tables.isotropic.unwrap_or(&placeholders[0]);
-        let anisotropic = tables.anisotropic.unwrap_or(&placeholders[1]);
-        let device = gpu.device();
-        let axes = |table: &TableTextures| {
-            device.create_buffer_init(&BufferInitDescriptor {
-                label: Some("ltc axes"),
-                contents: bytemuck::bytes_of(&table.axes),
-                usage: wgpu::BufferUsages::UNIFORM,
-            })
-        };
-        let (axes_2d, axes_4d) = (axes(isotropic), axes(anisotropic));
-        let (view_2d, view_4d) = (isotropic.view(), anisotropic.view());
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
-        let mut resources = vec![
-            axes_2d.as_entire_binding(),
-            view_2d.binding(),
-            axes_4d.as_entire_binding(),
-            view_4d.binding(),
-        ];
-        if gpu.filtering() == Filtering::Hardware {
-            resources.push(wgpu::BindingResource::Sampler(&sampler));
-        }
-        let mut entries: Vec<_> = (0..)
-            .zip(resources)
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
-        let textures = textures.map(LightTextures::view);
-        entries.extend(textures.as_ref().map(LightTextures::entry));
-        let label = Some("ltc tables");
-        Ok(device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries }))
-    })
 }

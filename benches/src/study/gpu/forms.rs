@@ -1,14 +1,14 @@
 //! Every form that is timed on the device. A new one is a line in one of these functions; its name is for ever.
 
 use glam::DMat3;
-use ltc_core::Matrix as _;
+use ltc_core::{Alpha, Matrix as _};
 use ltc_shade_gpu::timing::{Resource, Stage};
-use ltc_shade_gpu::{Filtering, Gpu, LightKind, LightShape, TableTextures, Tables, Texels};
+use ltc_shade_gpu::{BakedSlices, Filtering, Gpu, LightKind, LightShape, TableTextures, Tables, Texels};
 use ltc_table::{Catalogue, Query, Table};
 
 use super::super::StudyError;
 use super::bench::{Bench, Measure, Reads, lit, placed};
-use super::scene::{Materials, Pixel, reflectance};
+use super::scene::{self, Materials, Pixel, reflectance};
 use super::sources::{self, BOTH_HORIZONS, Find, Integrate};
 use super::tables::Published;
 
@@ -38,6 +38,7 @@ struct Held {
     gpu: Gpu,
     isotropic: TableTextures,
     anisotropic: TableTextures,
+    baked: BakedSlices,
     filtering: Filtering,
     name: &'static str,
     bound: f64,
@@ -45,7 +46,8 @@ struct Held {
 
 impl Held {
     fn tables(&self) -> Tables<'_> {
-        Tables { isotropic: Some(&self.isotropic), anisotropic: Some(&self.anisotropic) }
+        let (isotropic, anisotropic) = (Some(&self.isotropic), Some(&self.anisotropic));
+        Tables { isotropic, anisotropic, ..Tables::default() }
     }
 }
 
@@ -60,6 +62,12 @@ pub struct Forms<'a> {
     /// The program that only reads and writes pixels, in each stage.
     empty: [usize; 2],
     step: &'a dyn Fn(&str),
+}
+
+/// Of the blocks' materials.
+fn block_widths() -> Result<Vec<Alpha>, StudyError> {
+    let alpha = |[x, y]: [f32; 2]| Alpha::new(f64::from(x), f64::from(y));
+    Ok(scene::block_materials().into_iter().map(alpha).collect::<Result<_, _>>()?)
 }
 
 fn plain_lookup(table: &Table, query: &Query) -> Result<(DMat3, f64), StudyError> {
@@ -93,7 +101,8 @@ impl<'a> Forms<'a> {
             let Ok(gpu) = bench.gpu.with_tables(filtering, texels) else { continue };
             let tables = [isotropic, anisotropic].map(|table| TableTextures::upload(&gpu, table));
             let [on_2d, on_4d] = tables;
-            ways.push(Held { isotropic: on_2d?, anisotropic: on_4d?, gpu, filtering, name, bound });
+            let baked = BakedSlices::bake(&gpu, anisotropic, &block_widths()?)?;
+            ways.push(Held { isotropic: on_2d?, anisotropic: on_4d?, baked, gpu, filtering, name, bound });
         }
         let mut forms = Self { bench, extent, isotropic, anisotropic, published, ways, empty: [0; 2], step };
         forms.frame()?;
@@ -196,6 +205,10 @@ impl<'a> Forms<'a> {
                 Some(&anisotropic),
                 bound,
             )?;
+            let slices = Tables { baked: Some(&way.baked), ..Tables::default() };
+            let reads = Reads { tables: Some(slices), ..on(Materials::Blocks) };
+            let (name_baked, find) = (format!("anisotropic_baked/{name}"), Find::Baked(way.filtering));
+            self.lookup(&name_baked, gpu, Stage::Compute, find, reads, Some(&anisotropic), bound)?;
             if way.name == "texture_f32" && self.extent.all {
                 let reads = on(Materials::Isotropic);
                 let name = format!("isotropic_through_anisotropic/{name}");

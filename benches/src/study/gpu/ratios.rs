@@ -15,6 +15,13 @@ const RATIOS: &[Asked] = &[
         "compute/lookup/isotropic/texture_f32",
         Some(1.5),
     ),
+    // Materials whose widths do not change from pixel to pixel.
+    (
+        "anisotropic_baked_over_isotropic_lookup",
+        "compute/lookup/anisotropic_baked/texture_f32",
+        "compute/lookup/isotropic/texture_f32",
+        Some(1.5),
+    ),
     ("line_over_quad", "compute/integral/line/exact", "compute/integral/quad/exact", Some(0.5)),
     ("quad_over_published", "compute/integral/quad/exact", "compute/integral/quad/published_2016", Some(1.0)),
     // What explains them. A software driver does not jump over branches that no pixel takes: the plain way alone is what is left
@@ -41,6 +48,12 @@ const RATIOS: &[Asked] = &[
     (
         "anisotropic_over_isotropic_lookup_filtered",
         "compute/lookup/anisotropic/filtered_f16",
+        "compute/lookup/isotropic/filtered_f16",
+        None,
+    ),
+    (
+        "anisotropic_baked_over_isotropic_lookup_filtered",
+        "compute/lookup/anisotropic_baked/filtered_f16",
         "compute/lookup/isotropic/filtered_f16",
         None,
     ),

@@ -28,7 +28,9 @@ pub enum Materials {
     Isotropic,
     /// Widths of their own.
     Anisotropic,
-    /// The same pixels as the latter in an order without any: neighbours share nothing.
+    /// Blocks of pixels, each of one material: what has a slice of its own.
+    Blocks,
+    /// The same pixels as `Anisotropic` in an order without any: neighbours share nothing.
     Scattered,
 }
 
@@ -52,13 +54,10 @@ pub fn pixels(width: u32, height: u32, materials: Materials) -> Vec<Pixel> {
             let u = (f64::from(i % width) + 0.5) / f64::from(width);
             let v = (f64::from(i / width) + 0.5) / f64::from(height);
             let position = DVec3::new((2.0 * u - 1.0) * 16.0 / 9.0, 1.0 - 2.0 * v, 0.0).as_vec3();
-            // Smooth, as textures of materials are.
-            let wave = |f: f64, x: f64, y: f64| 0.5 + 0.5 * (TAU * f * (x + 0.3 * y)).sin();
-            let alpha = (0.05 + 0.75 * wave(3.0, u, v)) as f32;
-            let lambda = if materials == Materials::Isotropic { 1.0 } else { 0.15 + 0.8 * wave(2.0, v, u) };
-            let thin = (f64::from(alpha) * lambda) as f32;
-            let across = materials != Materials::Isotropic && wave(1.5, u, -v) > 0.5;
-            let (alpha_x, alpha_y) = if across { (thin, alpha) } else { (alpha, thin) };
+            let [alpha_x, alpha_y] = match materials {
+                Materials::Blocks => block_widths(block([u, v])),
+                _ => widths([u, v], materials != Materials::Isotropic),
+            };
             let wo = (EYE - position.as_dvec3()).normalize_or_zero().as_vec3();
             Pixel { position, alpha_x, wo, alpha_y }
         })
@@ -70,6 +69,37 @@ pub fn pixels(width: u32, height: u32, materials: Materials) -> Vec<Pixel> {
         }
     }
     all
+}
+
+/// GGX widths at a place of the picture, in [0, 1]²: smooth, as textures of materials are.
+fn widths([u, v]: [f64; 2], anisotropic: bool) -> [f32; 2] {
+    let wave = |f: f64, x: f64, y: f64| 0.5 + 0.5 * (TAU * f * (x + 0.3 * y)).sin();
+    let alpha = (0.05 + 0.75 * wave(3.0, u, v)) as f32;
+    let lambda = if anisotropic { 0.15 + 0.8 * wave(2.0, v, u) } else { 1.0 };
+    let thin = (f64::from(alpha) * lambda) as f32;
+    if anisotropic && wave(1.5, u, -v) > 0.5 { [thin, alpha] } else { [alpha, thin] }
+}
+
+/// Columns and rows of blocks; `timed_slice` of WGSL has the same.
+const BLOCKS: [u32; 2] = [8, 9];
+
+/// Number of the block at a place of the picture.
+fn block([u, v]: [f64; 2]) -> u32 {
+    let [columns, rows] = BLOCKS;
+    let step = |x: f64, count: u32| ((x * f64::from(count)) as u32).min(count - 1);
+    step(u, columns) + columns * step(v, rows)
+}
+
+/// Widths of a block's material.
+fn block_widths(block: u32) -> [f32; 2] {
+    let [columns, rows] = BLOCKS;
+    let middle = |k: u32, count: u32| (f64::from(k) + 0.5) / f64::from(count);
+    widths([middle(block % columns, columns), middle(block / columns, rows)], true)
+}
+
+/// The materials of all blocks, in their order.
+pub fn block_materials() -> Vec<[f32; 2]> {
+    (0..BLOCKS[0] * BLOCKS[1]).map(block_widths).collect()
 }
 
 /// As a storage buffer holds them.

@@ -24,6 +24,8 @@ pub enum Find {
     Isotropic(Filtering),
     /// A table for anisotropic ones.
     Anisotropic(Filtering),
+    /// A slice of a table for anisotropic ones, of the pixel's block.
+    Baked(Filtering),
     /// The same arithmetic as `Filtering::Buffer` on texels that are computed: what is left without fetches.
     IsotropicArithmetic,
     /// Likewise.
@@ -47,6 +49,15 @@ fn ltc_anisotropic_texel(entry: u32, group: u32) -> vec4f { return timed_texel(e
 @group(1) @binding(3) var<uniform> timed_axes: LtcAxes;
 ";
 
+/// The block that a point of the floor is in.
+const SLICE: &str = "
+fn timed_slice(position: vec3f) -> u32 {
+    let place = vec2f(position.x * 9.0 / 16.0 + 1.0, 1.0 - position.y) * vec2f(4.0, 4.5);
+    let block = min(vec2u(place), vec2u(7u, 8u));
+    return block.x + 8u * block.y;
+}
+";
+
 impl Find {
     fn is_published(self) -> bool {
         matches!(self, Self::PublishedFormula | Self::PublishedIsotropic | Self::PublishedAnisotropic)
@@ -59,6 +70,11 @@ impl Find {
                 Filtering::Exact => &["tables_exact", "lobe"],
                 Filtering::Hardware => &["tables_hardware", "lobe"],
                 Filtering::Buffer => &["tables_buffer", "lobe"],
+            },
+            Self::Baked(filtering) => match filtering {
+                Filtering::Exact => &["baked_exact", "lobe"],
+                Filtering::Hardware => &["baked_hardware", "lobe"],
+                Filtering::Buffer => &["baked_buffer", "lobe"],
             },
             Self::Formula => &["lobe"],
             Self::IsotropicArithmetic => &["fetch_function_isotropic", "lobe"],
@@ -80,6 +96,12 @@ impl Find {
             ),
             Self::Isotropic(_) => ours("lookup_isotropic(p.wo, p.alpha_x)"),
             Self::Anisotropic(_) => ours("lookup_anisotropic(p.wo, p.alpha_x, p.alpha_y)"),
+            Self::Baked(_) => {
+                format!(
+                    "{SLICE}{}",
+                    ours("lookup_baked(p.wo, p.alpha_x, p.alpha_y, timed_slice(p.position))")
+                )
+            }
             Self::IsotropicArithmetic => {
                 format!("{COMPUTED_TEXELS}{}", ours("ltc_lookup_isotropic(timed_axes, p.wo, p.alpha_x)"))
             }

@@ -12,7 +12,7 @@ pub fn lines(request: &ShaderRequest, language: Language, code: &str) -> Vec<Str
     let mut lines = asked(request, language);
     lines.push(String::new());
     lines.extend(conventions());
-    if request.has(Feature::Isotropic) || request.has(Feature::Anisotropic) {
+    if request.looks_up() {
         lines.push(String::new());
         lines.extend(tables(request));
     }
@@ -85,6 +85,12 @@ fn tables(request: &ShaderRequest) -> Vec<String> {
         lines.push(format!("  anisotropic: 3D, x = {lambda} node, y = {alpha} node,"));
         lines.push(format!("    z = {phi} node + len({phi}) * ({theta} node + len({theta}) * group)."));
     }
+    if request.has(Feature::Baked) {
+        lines.push(format!(
+            "  baked (`ltc_shade_gpu::BakedSlices`): 2D array, x = {phi} node, y = {theta} node,"
+        ));
+        lines.push(format!("    layer = slice + slices * group; LtcAxes has {theta} and {phi}. A slice is for one alpha_x, alpha_y."));
+    }
     lines.push(
         "LtcAxis of an axis of the manifest with `len` nodes over [from, to], u its mapping:".to_owned(),
     );
@@ -126,6 +132,7 @@ fn functions(request: &ShaderRequest) -> Vec<&'static str> {
         (Feature::Frame, &["ltc_frame", "ltc_shading_from_world"]),
         (Feature::Isotropic, &["ltc_lookup_isotropic"]),
         (Feature::Anisotropic, &["ltc_lookup_anisotropic"]),
+        (Feature::Baked, &["ltc_lookup_baked"]),
         (Feature::Fresnel, &["ltc_reflectance"]),
         (Feature::Textured, &["ltc_texture_fetch", "ltc_texture_colour", "ltc_texture_gaussian"]),
     ] {
@@ -168,9 +175,14 @@ fn signature(code: &str, name: &str) -> Option<String> {
 
 fn usage(request: &ShaderRequest, language: Language) -> Vec<String> {
     let mut lines = vec!["Use, once for a surface point:".to_owned()];
-    let table = if request.has(Feature::Anisotropic) { "anisotropic" } else { "isotropic" };
-    let alphas = if request.has(Feature::Anisotropic) { "alpha_x, alpha_y" } else { "alpha" };
-    if request.has(Feature::Isotropic) || request.has(Feature::Anisotropic) {
+    if let Some((table, alphas)) = [
+        (Feature::Anisotropic, "alpha_x, alpha_y"),
+        (Feature::Baked, "alpha_x, alpha_y, slice"),
+        (Feature::Isotropic, "alpha"),
+    ]
+    .into_iter()
+    .find(|(feature, _)| request.has(*feature))
+    {
         let by_function = request.has(Feature::FunctionTables);
         let sampled = request.has(Feature::HardwareFiltering) && !by_function;
         // GLSL's textures come with their sampler.
@@ -260,11 +272,15 @@ fn kernels(request: &ShaderRequest) -> Vec<String> {
         }
         lines.extend(textured.iter().map(|(light, holds)| format!("  ltc_textured_{light}_batch: {holds}")));
     }
-    let kinds = [(Feature::Isotropic, 3, "2D array"), (Feature::Anisotropic, 5, "3D")];
-    if kinds.iter().any(|kind| request.has(kind.0)) {
+    let kinds = [
+        (Feature::Isotropic, 3, "2D array"),
+        (Feature::Anisotropic, 5, "3D"),
+        (Feature::Baked, 8, "2D array"),
+    ];
+    if request.looks_up() {
         lines.extend([
             "Lookups, set 1: binding 0 uniform uvec4 (x: number of queries); 1 storage, queries; 2 storage, three vec4 for each".to_owned(),
-            "query as in a table's texels, written. A query: 32 bytes, vec3 wo, alpha_x, alpha_y, three words unused.".to_owned(),
+            "query as in a table's texels, written. A query: 32 bytes, vec3 wo, alpha_x, alpha_y, slice (as a word), two words unused.".to_owned(),
         ]);
         let by_function = request.has(Feature::FunctionTables);
         if request.has(Feature::HardwareFiltering) && !by_function {

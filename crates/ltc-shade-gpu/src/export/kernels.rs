@@ -53,9 +53,10 @@ struct LtcQuery {
     wo: vec3f,
     alpha_x: f32,
     alpha_y: f32,
+    // Of a baked lookup.
+    slice: u32,
     unused_0: u32,
     unused_1: u32,
-    unused_2: u32,
 }
 
 @group(1) @binding(0) var<uniform> query_count: vec4u;
@@ -73,8 +74,7 @@ fn ltc_write(index: u32, lookup: LtcLookup) {
 
 /// The request's functions and the kernels that call them, as WGSL.
 pub fn wgsl(request: &ShaderRequest) -> Result<String, ExportError> {
-    let tables = [Feature::Isotropic, Feature::Anisotropic].map(|feature| request.has(feature));
-    if request.lights.is_empty() && tables == [false; 2] {
+    if request.lights.is_empty() && !request.looks_up() {
         return Err(ExportError::NoKernel);
     }
     let mut roots = request.roots();
@@ -167,6 +167,7 @@ fn lookups(request: &ShaderRequest, text: &mut String) {
     for (feature, texture, first_binding, alphas) in [
         (Feature::Isotropic, "texture_2d_array<f32>", 3, "query.alpha_x"),
         (Feature::Anisotropic, "texture_3d<f32>", 5, "query.alpha_x, query.alpha_y"),
+        (Feature::Baked, "texture_2d_array<f32>", 8, "query.alpha_x, query.alpha_y, query.slice"),
     ] {
         if !request.has(feature) {
             continue;

@@ -30,7 +30,7 @@ pub enum ExportError {
     },
     /// Only lights and lookups have kernels.
     #[error(
-        "SPIR-V comes as kernels, and there is none for these features alone: name a light, isotropic or anisotropic"
+        "SPIR-V comes as kernels, and there is none for these features alone: name a light, isotropic, anisotropic or baked"
     )]
     NoKernel,
     /// The translator refused.
@@ -139,7 +139,7 @@ fn translated<T>(
 }
 
 /// What [`Feature::FunctionTables`] leaves to the host.
-const HOST_FUNCTIONS: [&str; 2] = ["ltc_isotropic_texel", "ltc_anisotropic_texel"];
+const HOST_FUNCTIONS: [&str; 3] = ["ltc_isotropic_texel", "ltc_anisotropic_texel", "ltc_baked_texel"];
 
 fn list<T: ToString>(items: impl IntoIterator<Item = T>) -> String {
     items.into_iter().map(|item| item.to_string()).collect::<Vec<_>>().join(", ")

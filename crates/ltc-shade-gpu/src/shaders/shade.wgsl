@@ -1,5 +1,6 @@
 // A surface point under all lights: one lookup, shared by deferred and forward shading. Whoever includes it binds
-// `lights` and `light_vertices`. Needs: frame, lights, fresnel, tables_exact or tables_hardware.
+// `lights` and `light_vertices`. Needs: frame, lights, fresnel, tables_exact, tables_hardware or tables_buffer; with baked slices
+// baked_exact, baked_hardware or baked_buffer.
 
 struct SurfacePoint {
     position: vec3f,
@@ -7,7 +8,8 @@ struct SurfacePoint {
     normal: vec3f,
     alpha_y: f32,
     tangent: vec3f,
-    isotropic: u32,
+    // TABLE_ANISOTROPIC, TABLE_ISOTROPIC, or from TABLE_FIRST_SLICE on a slice.
+    table: u32,
     // Unit, towards the eye, in world space.
     wo: vec3f,
     f90: f32,
@@ -28,8 +30,12 @@ fn shade(point: SurfacePoint, light_count: u32) -> vec3f {
     let frame = ltc_frame(point.normal, point.tangent);
     let wo = view_in_frame(frame, point.wo);
     var found: LtcLookup;
-    if point.isotropic != 0u {
+    if point.table == TABLE_ISOTROPIC {
         found = lookup_isotropic(wo, point.alpha_x);
+//#if baked
+    } else if point.table >= TABLE_FIRST_SLICE {
+        found = lookup_baked(wo, point.alpha_x, point.alpha_y, point.table - TABLE_FIRST_SLICE);
+//#endif
     } else {
         found = lookup_anisotropic(wo, point.alpha_x, point.alpha_y);
     }

@@ -4,7 +4,7 @@ use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
 use super::grid::TARGET;
 use super::{PixelGrid, Resource};
-use crate::table_textures::{bind_group, bind_group_layout};
+use crate::table_bindings::{Extras, TableBindings};
 use crate::{Gpu, GpuError, Tables};
 
 /// Where a program runs.
@@ -33,7 +33,7 @@ impl Stage {
 #[derive(Clone, Copy, Debug)]
 pub struct PixelSource<'a> {
     /// WGSL with `fn pixel(at: vec2u, index: u32) -> vec4f`, `index` counting row by row from the top. Tables are in group 0, as
-    /// the modules `tables_exact`, `tables_hardware` and `tables_buffer` bind them, resources in group 1 in their order; group 2
+    /// the modules `tables_exact`, `tables_hardware` and `tables_buffer` and, for baked slices, `baked_exact` and its like bind them, resources in group 1 in their order; group 2
     /// and names that begin with `timed_` are taken.
     pub wgsl: &'a str,
     /// The stage.
@@ -99,9 +99,12 @@ impl PixelProgram {
     /// # Errors
     /// [`GpuError::Device`] with what is wrong with the text.
     pub fn new(gpu: &Gpu, grid: &PixelGrid, source: &PixelSource<'_>) -> Result<Self, GpuError> {
-        let table_layout = source.tables.map(|_| bind_group_layout(gpu)).transpose()?;
-        let tables = match (&table_layout, source.tables) {
-            (Some(layout), Some(tables)) => Some(bind_group(gpu, layout, tables)?),
+        let bindings = |tables: Tables<'_>| {
+            TableBindings::new(gpu, Extras { textured: false, baked: tables.baked.is_some() })
+        };
+        let table_bindings = source.tables.map(bindings).transpose()?;
+        let tables = match (&table_bindings, source.tables) {
+            (Some(bindings), Some(tables)) => Some(bindings.bind(gpu, tables, None)?),
             _ => None,
         };
         gpu.checked(|| {
@@ -113,7 +116,7 @@ impl PixelProgram {
             });
             let layout = resource_layout(device, source.resources);
             let resources = bind(device, &layout, source.resources);
-            let groups = [table_layout.as_ref(), Some(&layout)];
+            let groups = [table_bindings.as_ref().map(TableBindings::layout), Some(&layout)];
             let pipeline = match source.stage {
                 Stage::Compute => compute(device, &module, groups, grid),
                 Stage::Fragment => fragment(device, &module, groups),

@@ -21,7 +21,7 @@ fn program(library: &str, version: &str) -> String {
 
 /// What a host defines where tables are functions.
 fn texels(library: &str, four: &str) -> String {
-    let names = ["ltc_isotropic_texel", "ltc_anisotropic_texel"];
+    let names = ["ltc_isotropic_texel", "ltc_anisotropic_texel", "ltc_baked_texel"];
     let declared = names.into_iter().filter(|name| library.contains(&format!("\n{four} {name}(")));
     declared
         .map(|name| {
@@ -35,7 +35,7 @@ fn texels(library: &str, four: &str) -> String {
 fn classes() -> Vec<ShaderRequest> {
     let mut list = ShaderRequest::permutations();
     list.retain(|request| request.lights.len() != 1 || [0, 4].contains(&request.features.len()));
-    assert_eq!(list.len(), 49);
+    assert_eq!(list.len(), 52);
     list
 }
 

@@ -1,10 +1,10 @@
 //! Forward shading against deferred shading of the same points.
 
 use glam::{Mat4, Vec3, Vec4};
-use ltc_core::{PrefilteredTexture, Sides, TexelGrid};
+use ltc_core::{Alpha, PrefilteredTexture, Sides, TexelGrid};
 use ltc_shade_gpu::{
-    AreaLight, Filtering, Forward, ForwardMaterial, ForwardVertex, ForwardView, Gpu, LightShape,
-    LightTexture, LightTextures, Shader, SurfacePoint, TableTextures, Tables,
+    AreaLight, BakedSlices, Filtering, Forward, ForwardMaterial, ForwardVertex, ForwardView, Gpu, LightShape,
+    LightTexture, LightTextures, Shader, ShadingOptions, SurfacePoint, TableTextures, Tables,
 };
 use ltc_table::Mapping;
 
@@ -60,13 +60,23 @@ fn looking(eye: Vec3, at: Vec3, aspect: f32) -> Mat4 {
 #[test]
 fn forward_is_deferred() {
     let Some(gpu) = gpu(Filtering::Exact) else { return };
-    compare(&gpu, &Forward::new(&gpu).unwrap(), &Shader::new(&gpu).unwrap(), &lights());
+    compare(&gpu, &Forward::new(&gpu).unwrap(), &Shader::new(&gpu).unwrap(), &lights(), None);
+}
+
+#[test]
+fn forward_is_deferred_with_baked_slices() {
+    let Some(gpu) = gpu(Filtering::Exact) else { return };
+    let options = || ShadingOptions { baked: true, ..ShadingOptions::default() };
+    let (forward, deferred) =
+        (Forward::with(&gpu, options()).unwrap(), Shader::with(&gpu, options()).unwrap());
+    compare(&gpu, &forward, &deferred, &lights(), Some(1));
 }
 
 /// A quad that its texture fills, one that it does not, a polygon, and lights without textures among them.
 #[test]
 fn forward_is_deferred_with_textures() {
     let Some(gpu) = gpu(Filtering::Exact) else { return };
+    let with_textures = |textures| ShadingOptions { textures: Some(textures), ..ShadingOptions::default() };
     let colours: Vec<[f32; 3]> = (0..64).map(|k| [(k % 8) as f32 / 8.0, (k / 8 % 2) as f32, 0.5]).collect();
     let picture = |width, height| {
         PrefilteredTexture::new(TexelGrid { width, height, colours: &colours, coverage: None }).unwrap()
@@ -80,16 +90,22 @@ fn forward_is_deferred_with_textures() {
     lights[3].texture = Some(slid);
     lights.push(AreaLight { texture: Some(LightTexture { number: 1, ..slid }), ..lights[0].clone() });
     let (forward, deferred) = (
-        Forward::with_textures(&gpu, textures.clone()).unwrap(),
-        Shader::with_textures(&gpu, textures).unwrap(),
+        Forward::with(&gpu, with_textures(textures.clone())).unwrap(),
+        Shader::with(&gpu, with_textures(textures)).unwrap(),
     );
-    compare(&gpu, &forward, &deferred, &lights);
+    compare(&gpu, &forward, &deferred, &lights, None);
 }
 
-fn compare(gpu: &Gpu, forward: &Forward, shader: &Shader, lights: &[AreaLight]) {
+/// As `f32` has them.
+fn widths((x, y): (f32, f32)) -> Alpha {
+    Alpha::new(f64::from(x), f64::from(y)).unwrap()
+}
+
+fn compare(gpu: &Gpu, forward: &Forward, shader: &Shader, lights: &[AreaLight], slice: Option<u32>) {
     let table = tables::anisotropic(Mapping::Linear, Mapping::Linear);
     let texture = TableTextures::upload(gpu, &table).unwrap();
-    let tables = Tables { isotropic: None, anisotropic: Some(&texture) };
+    let slices = BakedSlices::bake(gpu, &table, &[(0.9, 0.1), (0.4, 0.2)].map(widths)).unwrap();
+    let tables = Tables { anisotropic: Some(&texture), baked: Some(&slices), ..Tables::default() };
     let eye = Vec3::new(0.5, 2.0, 5.0);
     let clip_from_world = looking(eye, Vec3::ZERO, 1.5);
     let view = ForwardView { clip_from_world, eye, width: 48, height: 32 };
@@ -97,6 +113,7 @@ fn compare(gpu: &Gpu, forward: &Forward, shader: &Shader, lights: &[AreaLight]) 
         alpha_x: 0.4,
         alpha_y: 0.2,
         isotropic: false,
+        slice,
         f0: Vec3::splat(0.5),
         f90: 1.0,
         albedo: Vec3::new(0.1, 0.2, 0.3),
@@ -124,6 +141,7 @@ fn compare(gpu: &Gpu, forward: &Forward, shader: &Shader, lights: &[AreaLight]) 
             alpha_x: material.alpha_x,
             alpha_y: material.alpha_y,
             isotropic: false,
+            slice,
             f0: material.f0,
             f90: material.f90,
             albedo: material.albedo,

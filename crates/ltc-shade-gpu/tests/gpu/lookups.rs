@@ -2,7 +2,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use ltc_shade_gpu::{Filtering, Gpu, GpuError, LookupResult, Lookups, TableTextures};
+use ltc_core::Alpha;
+use ltc_shade_gpu::{
+    BakedLookups, BakedQuery, BakedSlices, Filtering, Gpu, GpuError, LookupResult, Lookups, TableTextures,
+};
 use ltc_table::{Axis, Mapping, Quantity, Query, Table};
 
 use crate::support::{gpu, random};
@@ -148,4 +151,73 @@ fn invalid_queries_are_refused_by_index() {
     let error = lookups.lookup(&gpu, &flat, &[stretched]).unwrap_err();
     assert!(matches!(error, GpuError::NotIsotropic { index: 0, .. }), "{error}");
     assert!(lookups.lookup(&gpu, &flat, &[]).unwrap().is_empty());
+}
+
+/// Widths of slices, also equal ones, thin ones and those whose larger one lies along y.
+fn widths() -> Vec<Alpha> {
+    [(0.5, 0.5), (0.8, 0.1), (0.1, 0.8), (0.33, 0.3), (0.02, 0.6), (1.0, 1.0), (0.0, 0.7)]
+        .map(|(x, y): (f32, f32)| Alpha::new(f64::from(x), f64::from(y)).unwrap())
+        .to_vec()
+}
+
+/// Views of the lookup tests, each with one of the slices, and the same as queries of the table.
+fn baked_queries(count: usize) -> (Vec<BakedQuery>, Vec<Query>) {
+    let widths = widths();
+    let pair = |(k, query): (usize, Query)| {
+        let slice = k % widths.len();
+        let (alpha_x, alpha_y) = (widths[slice].x(), widths[slice].y());
+        let baked = BakedQuery { slice: slice as u32, theta: query.theta, phi: query.phi };
+        (baked, Query { alpha_x, alpha_y, ..query })
+    };
+    anisotropic_queries(count).into_iter().enumerate().map(pair).unzip()
+}
+
+#[test]
+fn slices_are_the_table() {
+    for (filtering, tolerance) in [
+        (Filtering::Exact, TOLERANCE),
+        (Filtering::Buffer, TOLERANCE),
+        (Filtering::Hardware, HARDWARE_TOLERANCE),
+    ] {
+        let Some(gpu) = gpu(filtering) else { continue };
+        let lookups = BakedLookups::new(&gpu).unwrap();
+        let (baked, queries) = baked_queries(10_000);
+        for (name, table) in all_tables() {
+            let slices = BakedSlices::bake(&gpu, &table, &widths()).unwrap();
+            let found = lookups.lookup(&gpu, &slices, &baked).unwrap();
+            let error = largest_error(&table, &queries, &found);
+            println!("baked, {filtering:?}, {name}: largest error {error:.2e}");
+            assert!(error <= tolerance, "{filtering:?}, {name}: {error}");
+            // The control: a slice is not its neighbour.
+            let turned: Vec<_> =
+                baked.iter().map(|q| BakedQuery { slice: (q.slice + 1) % 7, ..*q }).collect();
+            let found = lookups.lookup(&gpu, &slices, &turned).unwrap();
+            assert!(largest_error(&table, &queries, &found) > 10.0 * tolerance, "{name}");
+        }
+    }
+}
+
+#[test]
+fn slices_that_are_not_there_are_refused() {
+    let Some(gpu) = gpu(Filtering::Exact) else { return };
+    let error = BakedSlices::bake(&gpu, &tables::isotropic(), &widths()).unwrap_err();
+    assert!(matches!(error, GpuError::NotAnisotropic), "{error}");
+    let table = tables::anisotropic(Mapping::Linear, Mapping::Linear);
+    let too_many = vec![widths()[0]; BakedSlices::most(&gpu) + 1];
+    let error = BakedSlices::bake(&gpu, &table, &too_many).unwrap_err();
+    assert!(matches!(error, GpuError::TableTooLarge { what: "depth", .. }), "{error}");
+    let lookups = BakedLookups::new(&gpu).unwrap();
+    let none = BakedSlices::bake(&gpu, &table, &[]).unwrap();
+    assert!(none.is_empty() && lookups.lookup(&gpu, &none, &[]).unwrap().is_empty());
+    let some = BakedSlices::bake(&gpu, &table, &widths()).unwrap();
+    assert_eq!(some.len(), widths().len());
+    let good = BakedQuery { slice: 6, theta: 0.3, phi: 0.1 };
+    for (slices, query) in
+        [(&none, BakedQuery { slice: 0, ..good }), (&some, BakedQuery { slice: 7, ..good })]
+    {
+        let error = lookups.lookup(&gpu, slices, &[query]).unwrap_err();
+        assert!(matches!(error, GpuError::WrongSlice { item: "query", index: 0, .. }), "{error}");
+    }
+    let error = lookups.lookup(&gpu, &some, &[good, BakedQuery { theta: f64::NAN, ..good }]).unwrap_err();
+    assert!(matches!(error, GpuError::Input { item: "query", index: 1, .. }), "{error}");
 }

@@ -1,9 +1,10 @@
 //! Deferred shading: GPU against `ltc_core` and `ltc_table` in f64.
 
 use glam::{DVec3, Vec3};
-use ltc_core::{Horizon, Ltc, Matrix, ShadingFrame, Sides, reflectance};
+use ltc_core::{Alpha, Horizon, Ltc, Matrix, ShadingFrame, Sides, reflectance};
 use ltc_shade_gpu::{
-    AreaLight, Filtering, Gpu, GpuError, LightShape, Shader, SurfacePoint, TableTextures, Tables,
+    AreaLight, BakedSlices, Filtering, Gpu, GpuError, LightShape, Shader, ShadingOptions, SurfacePoint,
+    TableTextures, Tables,
 };
 use ltc_table::{Mapping, Query, Table};
 
@@ -27,7 +28,8 @@ impl Both {
     fn shade(&self, gpu: &Gpu, points: &[SurfacePoint], lights: &[AreaLight]) -> Vec<[f32; 3]> {
         let isotropic = TableTextures::upload(gpu, &self.isotropic).unwrap();
         let anisotropic = TableTextures::upload(gpu, &self.anisotropic).unwrap();
-        let tables = Tables { isotropic: Some(&isotropic), anisotropic: Some(&anisotropic) };
+        let tables =
+            Tables { isotropic: Some(&isotropic), anisotropic: Some(&anisotropic), ..Tables::default() };
         Shader::new(gpu).unwrap().shade(gpu, tables, points, lights).unwrap()
     }
 
@@ -125,6 +127,7 @@ fn points(count: usize, rng: &mut impl FnMut() -> f64) -> Vec<SurfacePoint> {
                 alpha_x,
                 alpha_y: if isotropic { alpha_x } else { (0.02 + 0.98 * rng()) as f32 },
                 isotropic,
+                slice: None,
                 f0: unit_color(rng),
                 f90: rng() as f32,
                 albedo: if i % 3 == 0 { Vec3::ZERO } else { unit_color(rng) },
@@ -288,14 +291,62 @@ fn isotropic_points_do_without_an_isotropic_table() {
     let mut rng = random(2);
     let points = points(8, &mut rng);
     let lights = lights(1, &mut rng);
-    let only = Tables { isotropic: None, anisotropic: Some(&anisotropic) };
+    let only = Tables { anisotropic: Some(&anisotropic), ..Tables::default() };
     let results = shader.shade(&gpu, only, &points, &lights).unwrap();
     let as_anisotropic: Vec<_> = points.iter().map(|p| SurfacePoint { isotropic: false, ..*p }).collect();
     let (error, _) = largest_error(&both, &as_anisotropic, &lights, &results);
     assert!(error < TOLERANCE_PER_LIGHT, "{error}");
-    let only = Tables { isotropic: Some(&isotropic), anisotropic: None };
+    let only = Tables { isotropic: Some(&isotropic), ..Tables::default() };
     let error = shader.shade(&gpu, only, &points, &lights).unwrap_err();
     assert!(matches!(error, GpuError::MissingTable { index: 1, .. }), "{error}");
+}
+
+/// As many materials as a scene has, each with a slice; isotropic points among them go to their own table.
+#[test]
+fn baked_slices_shade_as_the_table() {
+    let Some(gpu) = gpu(Filtering::Exact) else { return };
+    let both = Both::new();
+    let mut rng = random(17);
+    let (mut points, lights) = (points(2_000, &mut rng), lights(8, &mut rng));
+    let palette: Vec<SurfacePoint> = points.iter().filter(|p| !p.isotropic).take(12).copied().collect();
+    let width = |x: f32| f64::from(x);
+    let widths: Vec<Alpha> =
+        palette.iter().map(|p| Alpha::new(width(p.alpha_x), width(p.alpha_y)).unwrap()).collect();
+    for (k, point) in points.iter_mut().enumerate().filter(|(_, p)| !p.isotropic) {
+        let slice = k % palette.len();
+        (point.alpha_x, point.alpha_y) = (palette[slice].alpha_x, palette[slice].alpha_y);
+        point.slice = Some(slice as u32);
+    }
+    let isotropic = TableTextures::upload(&gpu, &both.isotropic).unwrap();
+    let slices = BakedSlices::bake(&gpu, &both.anisotropic, &widths).unwrap();
+    // The whole table is not on the device.
+    let tables = Tables { isotropic: Some(&isotropic), baked: Some(&slices), ..Tables::default() };
+    let options = ShadingOptions { baked: true, ..ShadingOptions::default() };
+    let shader = Shader::with(&gpu, options).unwrap();
+    let results = shader.shade(&gpu, tables, &points, &lights).unwrap();
+    let (error, _) = largest_error(&both, &points, &lights, &results);
+    println!("with baked slices: largest error {error:.1e}");
+    assert!(error < TOLERANCE_PER_LIGHT * lights.len() as f64, "{error}");
+
+    let anisotropic = points.iter().position(|p| p.slice.is_some()).unwrap();
+    let slice = points[anisotropic].slice.unwrap();
+    let others = SurfacePoint { slice: Some((slice + 1) % 12), ..points[anisotropic] };
+    let beyond = SurfacePoint { slice: Some(12), ..points[anisotropic] };
+    for bad in [others, beyond] {
+        let error = shader.shade(&gpu, tables, &[bad], &lights).unwrap_err();
+        assert!(matches!(error, GpuError::WrongSlice { item: "point", index: 0, .. }), "{error}");
+    }
+    // Neither without slices, nor by a pipeline that was not compiled for them.
+    let none = Tables { baked: None, ..tables };
+    for error in [
+        shader.shade(&gpu, none, &points[anisotropic..=anisotropic], &lights).unwrap_err(),
+        Shader::new(&gpu)
+            .unwrap()
+            .shade(&gpu, tables, &points[anisotropic..=anisotropic], &lights)
+            .unwrap_err(),
+    ] {
+        assert!(matches!(error, GpuError::MissingTable { table: "baked", .. }), "{error}");
+    }
 }
 
 #[test]
@@ -303,7 +354,7 @@ fn invalid_points_and_lights_are_refused_by_index() {
     let Some(gpu) = gpu(Filtering::Exact) else { return };
     let both = Both::new();
     let anisotropic = TableTextures::upload(&gpu, &both.anisotropic).unwrap();
-    let tables = Tables { isotropic: None, anisotropic: Some(&anisotropic) };
+    let tables = Tables { anisotropic: Some(&anisotropic), ..Tables::default() };
     let shader = Shader::new(&gpu).unwrap();
     let mut rng = random(4);
     let point = points(1, &mut rng)[0];
