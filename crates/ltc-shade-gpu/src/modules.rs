@@ -30,8 +30,8 @@ macro_rules! module {
     };
 }
 
-/// All modules that are files. Beside them there are `constants`, `light_constants` and `table_constants`, generated from Rust, and `edge`,
-/// which stands for `edge_exact` or `edge_rational`.
+/// All modules that are files. Beside them there are `constants`, `light_constants` and `table_constants`, generated from Rust, `edge`,
+/// which stands for `edge_exact` or `edge_rational`, and `quad`, for `quad_careful` or `quad_lean`.
 pub const MODULES: &[Module] = &[
     module!(true, "math", []),
     module!(true, "precise", []),
@@ -42,7 +42,8 @@ pub const MODULES: &[Module] = &[
     module!(true, "boundary", ["math", "precise", "lobe", "edge"]),
     module!(true, "facing", ["math", "precise"]),
     module!(true, "polygon", ["boundary", "facing"]),
-    module!(true, "quad", ["boundary", "facing"]),
+    module!(true, "quad_careful", ["boundary", "facing"]),
+    module!(true, "quad_lean", ["math", "lobe", "edge"]),
     module!(true, "segment", ["math", "precise", "lobe"]),
     module!(true, "line", ["segment"]),
     module!(true, "line_caps", ["line"]),
@@ -188,7 +189,7 @@ impl Program {
 
 /// The text of the modules called `roots` and of all they need, each once, needed ones first. Names that are no
 /// module's are left out. Of `//#if WORD` … `//#else` … `//#endif` (or `//#ifnot WORD`) in a module, that part stays which
-/// `symbols` asks for; `rational_edges` also chooses the form of `edge`.
+/// `symbols` asks for; `rational_edges` and `lean_quads` choose what `edge` and `quad` stand for.
 pub fn compose(roots: &[&str], symbols: &[&str]) -> String {
     let mut chosen = Vec::new();
     for root in roots {
@@ -203,6 +204,8 @@ fn resolve<'a>(name: &'a str, symbols: &[&str]) -> &'a str {
     match name {
         "edge" if symbols.contains(&"rational_edges") => "edge_rational",
         "edge" => "edge_exact",
+        "quad" if symbols.contains(&"lean_quads") => "quad_lean",
+        "quad" => "quad_careful",
         other => other,
     }
 }

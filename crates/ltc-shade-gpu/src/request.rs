@@ -91,6 +91,9 @@ pub enum Feature {
     TwoSided,
     /// Angles of edges by a rational function instead of an arc tangent.
     RationalEdges,
+    /// Quads by one short loop: cut by the same horizons and as exact in absolute terms, for convex ones. Tiny lights keep fewer digits,
+    /// and a shading point in the light's plane is given what one of its sides sees, or nothing.
+    LeanQuads,
     /// The colour of textured quads and polygons, out of one texture that holds all of theirs ([`crate::TextureAtlas`]).
     Textured,
     /// Schlick's Fresnel term from F0 and F90 and a table's two channels.
@@ -103,7 +106,7 @@ pub enum Feature {
 
 impl Feature {
     /// Every feature there is.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Isotropic,
         Self::Anisotropic,
         Self::Baked,
@@ -113,6 +116,7 @@ impl Feature {
         Self::CosineHorizon,
         Self::TwoSided,
         Self::RationalEdges,
+        Self::LeanQuads,
         Self::Textured,
         Self::Fresnel,
         Self::Material,
@@ -134,6 +138,7 @@ impl Feature {
             Self::CosineHorizon => "cosine-horizon",
             Self::TwoSided => "two-sided",
             Self::RationalEdges => "rational-edges",
+            Self::LeanQuads => "lean-quads",
             Self::Textured => "textured",
             Self::Fresnel => "fresnel",
             Self::Material => "material",
@@ -155,6 +160,9 @@ impl Feature {
             Self::CosineHorizon => "cuts lights at the horizon of cosine space",
             Self::TwoSided => "flat lights take a parameter that says whether their back emits",
             Self::RationalEdges => "angles of edges by a rational function instead of an arc tangent",
+            Self::LeanQuads => {
+                "convex quads by one short loop: as exact in absolute terms, fewer digits of tiny ones"
+            }
             Self::Textured => "the colour of textured quads and polygons, from one texture for all",
             Self::Fresnel => "reflectance from F0, F90 and a table's two channels",
             Self::Material => "glTF's metallic-roughness parameters, with anisotropy",
@@ -297,6 +305,7 @@ impl ShaderRequest {
             (Feature::CosineHorizon, "cosine_horizon"),
             (Feature::TwoSided, "two_sided"),
             (Feature::RationalEdges, "rational_edges"),
+            (Feature::LeanQuads, "lean_quads"),
         ]
         .into_iter()
         .filter_map(|(feature, symbol)| self.has(feature).then_some(symbol))
@@ -321,6 +330,10 @@ impl ShaderRequest {
                 let chosen = (0..switches.len()).filter(|i| choice & (1 << i) != 0).map(|i| switches[i]);
                 list.push(Self::new(lights.iter().copied(), chosen));
             }
+        }
+        for choice in 0..1 << switches.len() {
+            let chosen = (0..switches.len()).filter(|i| choice & (1 << i) != 0).map(|i| switches[i]);
+            list.push(Self::new([LightKind::Quad], chosen.chain([Feature::LeanQuads])));
         }
         for tables in
             [&[Feature::Isotropic][..], &[Feature::Anisotropic], &[Feature::Baked], &Feature::LOOKUPS]

@@ -303,6 +303,8 @@ impl<'a> Forms<'a> {
             &[],
             LEAKS,
         )?;
+        let lean = Integrate::Shipped(quad, &["surface_horizon", "cosine_horizon", "lean_quads"]);
+        self.light("quad/lean", compute, ours, lean, on(quad), &[], EXACT)?;
         // Where it leaves a pixel to others, nobody is there.
         self.light("quad/plain_alone", compute, ours, Integrate::PlainQuad, on(quad), &[], 1.0)?;
         let alone = Integrate::Shipped(quad, &["cosine_horizon"]);
@@ -333,6 +335,8 @@ impl<'a> Forms<'a> {
         let name = "quad/published_2016_half_below_the_surface";
         self.light(name, compute, published, Integrate::PublishedQuad, sunk.clone(), &[], LEAKS)?;
         self.light("quad/half_below_the_surface", compute, ours, shipped(quad), sunk, &[], EXACT)?;
+        let name = "quad/lean_half_below_the_surface";
+        self.light(name, compute, ours, lean, placed(quad, most, true), &[], EXACT)?;
         let records = records(&on(quad).0);
         let bytes: Vec<u8> = records.iter().flat_map(|word| word.to_le_bytes()).collect();
         let gpu = self.bench.gpu;

@@ -24,6 +24,12 @@ const RATIOS: &[Asked] = &[
     ),
     ("line_over_quad", "compute/integral/line/exact", "compute/integral/quad/exact", Some(0.5)),
     ("quad_over_published", "compute/integral/quad/exact", "compute/integral/quad/published_2016", Some(1.0)),
+    (
+        "lean_quad_over_published",
+        "compute/integral/quad/lean",
+        "compute/integral/quad/published_2016",
+        Some(1.0),
+    ),
     // What explains them. A software driver does not jump over branches that no pixel takes: the plain way alone is what is left
     // on hardware where neighbours go the same way.
     (
