@@ -305,8 +305,6 @@ impl<'a> Forms<'a> {
         )?;
         let lean = Integrate::Shipped(quad, &["surface_horizon", "cosine_horizon", "lean_quads"]);
         self.light("quad/lean", compute, ours, lean, on(quad), &[], EXACT)?;
-        // Where it leaves a pixel to others, nobody is there.
-        self.light("quad/plain_alone", compute, ours, Integrate::PlainQuad, on(quad), &[], 1.0)?;
         let alone = Integrate::Shipped(quad, &["cosine_horizon"]);
         self.light("quad/cosine_horizon_alone", compute, ours, alone, on(quad), &[], LEAKS)?;
         let [_, sphere, filter] = self.published.isotropic_textures(self.bench.gpu)?;

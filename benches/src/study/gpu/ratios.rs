@@ -30,15 +30,9 @@ const RATIOS: &[Asked] = &[
         "compute/integral/quad/published_2016",
         Some(1.0),
     ),
-    // What explains them. A software driver does not jump over branches that no pixel takes: the plain way alone is what is left
-    // on hardware where neighbours go the same way.
-    (
-        "plain_quad_over_published",
-        "compute/integral/quad/plain_alone",
-        "compute/integral/quad/published_2016",
-        None,
-    ),
-    ("line_over_plain_quad", "compute/integral/line/exact", "compute/integral/quad/plain_alone", None),
+    // What explains them. A software driver does not jump over branches that no pixel takes: the lean quad is what is left of the
+    // careful one on hardware where neighbours go the same way.
+    ("line_over_lean_quad", "compute/integral/line/exact", "compute/integral/quad/lean", None),
     (
         "anisotropic_over_isotropic_lookup_f16",
         "compute/lookup/anisotropic/texture_f16",

@@ -123,8 +123,6 @@ pub enum Integrate {
     Shipped(LightKind, &'static [&'static str]),
     /// The shipped function behind a switch over all kinds, every feature present.
     AllKinds,
-    /// The way of the shipped quad that nearly all pixels take, without what it leaves to others.
-    PlainQuad,
     /// 2016: clipped by cases, rational edges.
     PublishedQuad,
     /// The sphere instead of a clip.
@@ -186,20 +184,11 @@ fn timed_fraction(lobe: LtcLobe, position: vec3f, light: u32) -> f32 {
 }
 ";
 
-const PLAIN_QUAD: &str = "
-fn timed_fraction(lobe: LtcLobe, position: vec3f, light: u32) -> f32 {
-    let plain = ltc_quad_plain(lobe, timed_points[4u * light].xyz - position, timed_points[4u * light + 1u].xyz - position,
-        timed_points[4u * light + 2u].xyz - position, timed_points[4u * light + 3u].xyz - position);
-    return clamp(-plain.sum / (2.0 * LTC_PI), 0.0, 1.0);
-}
-";
-
 impl Integrate {
     fn modules(self) -> Vec<&'static str> {
         match self {
             Self::Shipped(kind, _) => vec![fraction(kind).0],
             Self::AllKinds => vec!["lights"],
-            Self::PlainQuad => vec!["quad"],
             _ => Vec::new(),
         }
     }
@@ -208,7 +197,6 @@ impl Integrate {
         match self {
             Self::Shipped(_, symbols) => symbols,
             Self::AllKinds => &["surface_horizon", "cosine_horizon", "two_sided"],
-            Self::PlainQuad => BOTH_HORIZONS,
             _ => &[],
         }
     }
@@ -229,7 +217,6 @@ impl Integrate {
                 )
             }
             Self::AllKinds => ALL_KINDS.to_owned(),
-            Self::PlainQuad => PLAIN_QUAD.to_owned(),
             Self::PublishedQuad => format!("{PUBLISHED_EDGE}\n{}", include_str!("wgsl/published_quad.wgsl")),
             Self::PublishedProxy => {
                 format!("{PUBLISHED_EDGE}\n{}", include_str!("wgsl/published_proxy.wgsl"))
