@@ -6,6 +6,7 @@
 mod back_end;
 mod devices;
 mod job;
+mod lean;
 mod lights;
 pub mod make;
 mod pairs;
@@ -15,6 +16,7 @@ pub mod tolerance;
 
 pub use back_end::{BackEnd, CpuF32, CpuF64, Gpu, Path};
 pub use job::Job;
+pub use lean::{LeanQuads, lean_quads};
 pub use lights::{
     LightBackEnd, LightsF32, LightsF64, LightsOnGpu, condition, light_back_ends, light_jobs, matrix,
 };

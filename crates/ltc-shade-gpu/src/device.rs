@@ -61,6 +61,7 @@ pub struct Gpu {
     info: GpuInfo,
     filtering: Filtering,
     texels: Texels,
+    draws_floats: bool,
 }
 
 impl Gpu {
@@ -111,7 +112,10 @@ impl Gpu {
         };
         let (device, queue) =
             pollster::block_on(adapter.request_device(&descriptor)).map_err(GpuError::device)?;
-        Ok(Self { device, queue, info, filtering: options.filtering, texels: options.texels })
+        let usages = adapter.get_texture_format_features(wgpu::TextureFormat::Rgba32Float).allowed_usages;
+        let draws_floats = usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT);
+        let GpuOptions { filtering, texels, .. } = options;
+        Ok(Self { device, queue, info, filtering, texels, draws_floats })
     }
 
     /// The same device, with tables interpolated and held in another way.
@@ -123,7 +127,7 @@ impl Gpu {
             return Err(GpuError::NotFilterable { device: self.info.to_string() });
         }
         let (device, queue, info) = (self.device.clone(), self.queue.clone(), self.info.clone());
-        Ok(Self { device, queue, info, filtering, texels })
+        Ok(Self { device, queue, info, filtering, texels, draws_floats: self.draws_floats })
     }
 
     /// Name, back end and driver.
@@ -139,6 +143,11 @@ impl Gpu {
     /// The numbers of tables.
     pub fn texels(&self) -> Texels {
         self.texels
+    }
+
+    /// Whether it draws into textures of 32-bit floats; GL without extensions does not.
+    pub(crate) fn draws_floats(&self) -> bool {
+        self.draws_floats
     }
 
     pub(crate) fn device(&self) -> &wgpu::Device {

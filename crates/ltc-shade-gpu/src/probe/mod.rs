@@ -200,6 +200,22 @@ mod tests {
         assert!(!off(&lights.findings).contains(&"arc tangent"), "{lights}");
     }
 
+    /// GL has less, and says so instead of failing.
+    #[test]
+    fn gl_is_probed_too() {
+        let gpu = match Gpu::new(GpuOptions { backend: Some("gl"), ..GpuOptions::default() }) {
+            Ok(gpu) => gpu,
+            Err(error @ GpuError::NoAdapter { .. }) => {
+                eprintln!("skipped, because GL cannot run this: {error}");
+                return;
+            }
+            Err(error) => panic!("{error}"),
+        };
+        let report = probe(&gpu).unwrap();
+        println!("{report}");
+        assert_eq!(off(&report.findings), [""; 0], "{report}");
+    }
+
     #[test]
     fn not_a_number_is_off() {
         assert_eq!(Finding::measured("x", f64::NAN, 1.0, "").verdict, Verdict::Off);

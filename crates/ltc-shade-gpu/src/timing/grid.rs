@@ -17,8 +17,35 @@ pub struct PixelGrid {
     width: u32,
     height: u32,
     pub(super) buffer: wgpu::Buffer,
-    target: wgpu::Texture,
-    pub(super) view: wgpu::TextureView,
+    /// Where the device draws into floats.
+    target: Option<Target>,
+}
+
+#[derive(Debug)]
+struct Target {
+    texture: wgpu::Texture,
+    view: wgpu::TextureView,
+}
+
+impl Target {
+    /// None where the device does not draw into floats, as GL without extensions.
+    fn new(gpu: &Gpu, width: u32, height: u32) -> Option<Self> {
+        if !gpu.draws_floats() {
+            return None;
+        }
+        let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+            label: Some("ltc pixels"),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: TARGET,
+            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&Default::default());
+        Some(Self { texture, view })
+    }
 }
 
 impl PixelGrid {
@@ -47,18 +74,7 @@ impl PixelGrid {
                 usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });
-            let target = gpu.device().create_texture(&wgpu::TextureDescriptor {
-                label: Some("ltc pixels"),
-                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: TARGET,
-                usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_SRC,
-                view_formats: &[],
-            });
-            let view = target.create_view(&Default::default());
-            Ok(Self { width, height, buffer, target, view })
+            Ok(Self { width, height, buffer, target: Target::new(gpu, width, height) })
         })
     }
 
@@ -87,7 +103,13 @@ impl PixelGrid {
         read_back(gpu, &self.buffer)
     }
 
+    /// What the fragment stage draws into.
+    pub(super) fn view(&self) -> Option<&wgpu::TextureView> {
+        self.target.as_ref().map(|target| &target.view)
+    }
+
     pub(super) fn read_target(&self, gpu: &Gpu) -> Result<Vec<u32>, GpuError> {
+        let Some(Target { texture, .. }) = &self.target else { return Err(no_target(gpu)) };
         let row = (16 * self.width).next_multiple_of(ROW);
         let pixels = gpu.device().create_buffer(&wgpu::BufferDescriptor {
             label: Some("ltc pixels"),
@@ -99,10 +121,15 @@ impl PixelGrid {
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
         let to = wgpu::TexelCopyBufferInfo { buffer: &pixels, layout };
         let mut encoder = gpu.device().create_command_encoder(&Default::default());
-        encoder.copy_texture_to_buffer(self.target.as_image_copy(), to, self.target.size());
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), to, texture.size());
         gpu.queue().submit([encoder.finish()]);
         let words = read_back(gpu, &pixels)?;
         let used = 4 * self.width as usize;
         Ok(words.chunks(row as usize / 4).flat_map(|row| row[..used].iter().copied()).collect())
     }
+}
+
+/// What a program of the fragment stage is told where there is nothing to draw into.
+pub(super) fn no_target(gpu: &Gpu) -> GpuError {
+    GpuError::device(format!("{} does not draw into float textures", gpu.info()))
 }

@@ -2,7 +2,7 @@
 
 use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
-use super::grid::TARGET;
+use super::grid::{TARGET, no_target};
 use super::{PixelGrid, Resource};
 use crate::table_bindings::{Extras, TableBindings};
 use crate::{Gpu, GpuError, Tables};
@@ -97,8 +97,12 @@ impl PixelProgram {
     /// Compiles it for this grid.
     ///
     /// # Errors
-    /// [`GpuError::Device`] with what is wrong with the text.
+    /// [`GpuError::Device`] with what is wrong with the text, and for the fragment stage of a device that does not draw into float
+    /// textures.
     pub fn new(gpu: &Gpu, grid: &PixelGrid, source: &PixelSource<'_>) -> Result<Self, GpuError> {
+        if source.stage == Stage::Fragment && grid.view().is_none() {
+            return Err(no_target(gpu));
+        }
         let bindings = |tables: Tables<'_>| {
             TableBindings::new(gpu, Extras { textured: false, baked: tables.baked.is_some() })
         };
@@ -194,6 +198,8 @@ impl PixelProgram {
                         beginning_of_pass_write_index: begin,
                         end_of_pass_write_index: end,
                     });
+                // Never absent: such a program is not compiled for a grid without.
+                let Some(view) = grid.view() else { return };
                 // Every pixel is covered; the clear spares tiles the reading of what was there.
                 let ops = wgpu::Operations {
                     load: wgpu::LoadOp::Clear(wgpu::Color { r: f64::NAN, g: 0.0, b: 0.0, a: 0.0 }),
@@ -202,7 +208,7 @@ impl PixelProgram {
                 let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                     label: Some("ltc timed"),
                     color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                        view: &grid.view,
+                        view,
                         depth_slice: None,
                         resolve_target: None,
                         ops,

@@ -48,13 +48,17 @@ struct LtcBoundary {
     bool started;
     float sum;
 };
-struct LtcPlain {
+struct LtcArcs {
     float sum;
-    bool holds;
+    vec3 exit;
+    vec3 entry;
+    vec2 cosine_exit;
+    vec2 cosine_entry;
+    vec2 crossings;
+    bool half_turn;
 };
 const float LTC_PI = 3.1415927;
 const float LTC_TINY = 1e-37;
-const float LTC_PLAIN_COSINE = -0.95;
 
 
 float ltc_largest_component(vec3 v) {
@@ -339,42 +343,53 @@ float ltc_facing(vec3 normal, vec3 point, float reach) {
     return ((abs(facing) > ((9.536743e-7 * reach) * length(normal))) ? facing : 0.0);
 }
 
-// The z component of the edge's integral, (a x b) theta / sin(theta), for unit vectors.
-float ltc_plain_edge(vec3 a, vec3 b, float cosine) {
-    float _e4 = ltc_angle_over_sine(abs(cosine));
-    float obtuse = ((LTC_PI * inversesqrt(max((1.0 - (cosine * cosine)), 0.01))) - _e4);
-    return (((a.x * b.y) - (a.y * b.x)) * ((cosine < 0.0) ? obtuse : _e4));
+// Adds the arc from `a` along `edge`, in cosine space, whose ends have these heights above the surface.
+void ltc_arcs_add(inout LtcArcs arcs, vec3 a, vec3 edge, vec2 heights) {
+    vec2 part = vec2(0.0, 1.0);
+    bool hidden = false;
+    float _e11 = part.x;
+    vec3 begin = (a + (_e11 * edge));
+    float _e15 = part.y;
+    vec3 end = (a + (_e15 * edge));
+    float _e20 = part.y;
+    float _e22 = part.x;
+    vec3 normal = (cross(a, edge) * (_e20 - _e22));
+    float along = dot(begin, end);
+    float radius = sqrt((dot(begin, begin) * dot(end, end)));
+    float sine = sqrt(dot(normal, normal));
+    float x = abs(along);
+    float square = (radius * radius);
+    float over = ((((0.18455717 * x) + (1.330676 * radius)) * x) + (1.5707963 * square));
+    float under = ((((((0.040163346 * x) + (0.5621138 * radius)) * x) + (1.4837523 * square)) * x) + (square * radius));
+    bool obtuse = (along < 0.0);
+    float numerator = (obtuse ? ((LTC_PI * under) - (over * sine)) : over);
+    float denominator = (obtuse ? (under * sine) : under);
+    float _e65 = arcs.sum;
+    bool _e71 = hidden;
+    arcs.sum = (_e65 + (_e71 ? 0.0 : ((normal.z * numerator) / max(denominator, 1e-36))));
+    bool _e77 = arcs.half_turn;
+    bool _e82 = hidden;
+    arcs.half_turn = (_e77 || ((obtuse && (sine < (0.02 * radius))) && !(_e82)));
+    return;
 }
 
-// The sum over the edges of a quad that the surface's horizon does not cut (Heitz et al. 2016, eq. 11).
-LtcPlain ltc_quad_plain(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
-    LtcPlain none = LtcPlain(0.0, false);
-    vec3 _e8 = ltc_cosine_from_target(lobe, v0);
-    vec3 _e9 = ltc_cosine_from_target(lobe, v1);
-    vec3 _e10 = ltc_cosine_from_target(lobe, v2);
-    vec3 _e11 = ltc_cosine_from_target(lobe, v3);
-    vec4 squares = vec4(dot(_e8, _e8), dot(_e9, _e9), dot(_e10, _e10), dot(_e11, _e11));
-    if (!((min(min(squares.x, squares.y), min(squares.z, squares.w)) > 1e-30))) {
-        return none;
-    }
-    vec4 shrink = inversesqrt(squares);
-    vec3 a = (_e8 * shrink.x);
-    vec3 b = (_e9 * shrink.y);
-    vec3 c = (_e10 * shrink.z);
-    vec3 d = (_e11 * shrink.w);
-    float ab = dot(a, b);
-    float bc = dot(b, c);
-    float cd = dot(c, d);
-    float da = dot(d, a);
-    if ((min(min(ab, bc), min(cd, da)) < LTC_PLAIN_COSINE)) {
-        return none;
-    }
-    float _e45 = ltc_plain_edge(a, b, ab);
-    float _e46 = ltc_plain_edge(b, c, bc);
-    float _e48 = ltc_plain_edge(c, d, cd);
-    float _e50 = ltc_plain_edge(d, a, da);
-    float sum = (((_e45 + _e46) + _e48) + _e50);
-    return LtcPlain(sum, true);
+// All arcs of the quad; its largest coordinate is about 1.
+LtcArcs ltc_quad_arcs(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
+    LtcArcs arcs = LtcArcs(0.0, vec3(0.0), vec3(0.0), vec2(0.0), vec2(0.0), vec2(0.0), false);
+    vec3 none = vec3(0.0);
+    arcs = LtcArcs(0.0, none, none, none.xy, none.xy, none.xy, false);
+    vec3 _e14 = ltc_cosine_from_target(lobe, v0);
+    vec3 _e16 = ltc_cosine_from_target(lobe, (v1 - v0));
+    vec3 _e18 = ltc_cosine_from_target(lobe, (v2 - v1));
+    vec3 _e20 = ltc_cosine_from_target(lobe, (v3 - v2));
+    vec3 b = (_e14 + _e16);
+    vec3 c = (b + _e18);
+    ltc_arcs_add(arcs, _e14, _e16, vec2(v0.z, v1.z));
+    ltc_arcs_add(arcs, b, _e18, vec2(v1.z, v2.z));
+    ltc_arcs_add(arcs, c, _e20, vec2(v2.z, v3.z));
+    ltc_arcs_add(arcs, (c + _e20), -(((_e16 + _e18) + _e20)), vec2(v3.z, v0.z));
+    LtcArcs _e39 = arcs;
+    return _e39;
 }
 
 // The fraction of the lobe that sees the quad, in [0, 1]; corners counter-clockwise seen from the emitting side, relative to
@@ -409,85 +424,85 @@ float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     b = (v1 / vec3(scale));
     c = (v2 / vec3(scale));
     d = (v3 / vec3(scale));
-    vec3 _e35 = c;
-    vec3 _e36 = a;
-    vec3 _e38 = d;
-    vec3 _e39 = b;
-    vec3 area = cross((_e35 - _e36), (_e38 - _e39));
-    vec3 _e42 = a;
-    float height = dot(area, _e42);
+    vec3 _e34 = c;
+    vec3 _e35 = a;
+    vec3 _e37 = d;
+    vec3 _e38 = b;
+    vec3 area = cross((_e34 - _e35), (_e37 - _e38));
+    vec3 _e41 = a;
+    float height = dot(area, _e41);
     float size = dot(area, area);
-    if (true) {
-        local_3 = (size > 1e-6);
+    if ((size > 1e-6)) {
+        local_3 = ((height * height) > (1e-6 * size));
     } else {
         local_3 = false;
     }
-    bool _e50 = local_3;
-    if (_e50) {
-        local_4 = ((height * height) > (1e-6 * size));
-    } else {
-        local_4 = false;
-    }
-    bool _e58 = local_4;
-    if (_e58) {
+    bool _e53 = local_3;
+    if (_e53) {
         if ((height > 0.0)) {
-            local_5 = true;
+            local_4 = true;
+        } else {
+            local_4 = false;
+        }
+        bool _e60 = local_4;
+        if (_e60) {
+            return 0.0;
+        }
+        vec3 _e62 = a;
+        vec3 _e63 = b;
+        vec3 _e64 = c;
+        vec3 _e65 = d;
+        LtcArcs _e66 = ltc_quad_arcs(lobe, _e62, _e63, _e64, _e65);
+        if (!(_e66.half_turn)) {
+            local_5 = (max(_e66.crossings.x, _e66.crossings.y) <= 2.0);
         } else {
             local_5 = false;
         }
-        bool _e65 = local_5;
-        if (_e65) {
-            return 0.0;
-        }
-        vec3 _e67 = a;
-        vec3 _e68 = b;
-        vec3 _e69 = c;
-        vec3 _e70 = d;
-        LtcPlain _e71 = ltc_quad_plain(lobe, _e67, _e68, _e69, _e70);
-        if (_e71.holds) {
-            return clamp((((height < 0.0) ? -(_e71.sum) : _e71.sum) / 6.2831855), 0.0, 1.0);
+        bool _e79 = local_5;
+        if (_e79) {
+            return clamp((((height < 0.0) ? -(_e66.sum) : _e66.sum) / 6.2831855), 0.0, 1.0);
         }
     }
-    vec3 _e84 = c;
-    vec3 _e85 = a;
-    vec3 _e87 = d;
-    vec3 _e88 = b;
-    vec3 _e90 = ltc_cross((_e84 - _e85), (_e87 - _e88));
-    vec3 _e91 = a;
-    float _e93 = ltc_facing(_e90, _e91, 1.0);
-    bool _e94 = ltc_emits_towards(_e93, false);
-    if (!(_e94)) {
+    vec3 _e91 = c;
+    vec3 _e92 = a;
+    vec3 _e94 = d;
+    vec3 _e95 = b;
+    vec3 _e97 = ltc_cross((_e91 - _e92), (_e94 - _e95));
+    vec3 _e98 = a;
+    float _e100 = ltc_facing(_e97, _e98, 1.0);
+    bool _e101 = ltc_emits_towards(_e100, false);
+    if (!(_e101)) {
         return 0.0;
     }
-    LtcBoundary _e97 = ltc_boundary();
-    boundary = _e97;
+    LtcBoundary _e104 = ltc_boundary();
+    boundary = _e104;
     bool loop_init = true;
     while(true) {
         if (!loop_init) {
-            int _e110 = i;
-            i = (_e110 + 1);
+            int _e117 = i;
+            i = (_e117 + 1);
         }
         loop_init = false;
-        int _e101 = i;
-        if ((_e101 < 4)) {
+        int _e108 = i;
+        if ((_e108 < 4)) {
         } else {
             break;
         }
         {
-            vec3 _e104 = a;
-            ltc_boundary_push(boundary, lobe, _e104);
+            vec3 _e111 = a;
+            ltc_boundary_push(boundary, lobe, _e111);
             vec3 moved = a;
-            vec3 _e106 = b;
-            a = _e106;
-            vec3 _e107 = c;
-            b = _e107;
-            vec3 _e108 = d;
-            c = _e108;
+            vec3 _e113 = b;
+            a = _e113;
+            vec3 _e114 = c;
+            b = _e114;
+            vec3 _e115 = d;
+            c = _e115;
             d = moved;
         }
     }
-    float _e112 = ltc_boundary_finish(boundary, lobe);
-    float _e117 = ltc_fraction_of_sum(((_e93 > 0.0) ? -(_e112) : _e112));
-    return clamp(_e117, 0.0, 1.0);
+    float _e119 = ltc_boundary_finish(boundary, lobe);
+    float _e124 = ltc_fraction_of_sum(((_e100 > 0.0) ? -(_e119) : _e119));
+    return clamp(_e124, 0.0, 1.0);
 }
 

@@ -97,9 +97,14 @@ struct LtcBoundary {
     bool has_exit;
     float sum;
 };
-struct LtcPlain {
+struct LtcArcs {
     float sum;
-    bool holds;
+    vec3 exit;
+    vec3 entry;
+    vec2 cosine_exit;
+    vec2 cosine_entry;
+    vec2 crossings;
+    bool half_turn;
 };
 const float LTC_PI = 3.1415927;
 const float LTC_TINY = 1e-37;
@@ -109,7 +114,6 @@ const uint LTC_SQRT = 1u;
 const uint LTC_SQRT_ONE_MINUS_COS = 2u;
 const uint LTC_HALF_TANGENT = 3u;
 const uint LTC_GRAZING_HALF_TANGENT = 4u;
-const float LTC_PLAIN_COSINE = -0.95;
 
 
 float ltc_largest_component(vec3 v) {
@@ -646,180 +650,109 @@ float ltc_facing(vec3 normal, vec3 point, float reach) {
     return ((abs(facing) > ((9.536743e-7 * reach) * length(normal))) ? facing : 0.0);
 }
 
-// The z component of the edge's integral, (a x b) theta / sin(theta), for unit vectors.
-float ltc_plain_edge(vec3 a, vec3 b, float cosine) {
-    float _e4 = ltc_angle_over_sine(abs(cosine));
-    float obtuse = ((LTC_PI * inversesqrt(max((1.0 - (cosine * cosine)), 0.01))) - _e4);
-    return (((a.x * b.y) - (a.y * b.x)) * ((cosine < 0.0) ? obtuse : _e4));
+// Adds the arc from `a` along `edge`, in cosine space, whose ends have these heights above the surface.
+void ltc_arcs_add(inout LtcArcs arcs, vec3 a, vec3 edge, vec2 heights) {
+    vec2 part = vec2(0.0, 1.0);
+    bool hidden = false;
+    bvec2 sunk = lessThan(heights, vec2(0.0));
+    hidden = (sunk.x && sunk.y);
+    bool sinks = (sunk.x != sunk.y);
+    float at = (heights.x / (sinks ? (heights.x - heights.y) : 1.0));
+    vec3 cut = (a + (at * edge));
+    vec3 _e30 = arcs.entry;
+    arcs.entry = ((sunk.x && sinks) ? cut : _e30);
+    vec3 _e36 = arcs.exit;
+    arcs.exit = ((sunk.y && sinks) ? cut : _e36);
+    float _e42 = arcs.crossings.x;
+    arcs.crossings.x = (_e42 + (sinks ? 1.0 : 0.0));
+    part = vec2(((sunk.x && sinks) ? at : 0.0), ((sunk.y && sinks) ? at : 1.0));
+    vec2 _e57 = part;
+    vec2 lifted = (a.zz + (_e57 * edge.z));
+    bvec2 below = lessThan(lifted, vec2(0.0));
+    bool _e67 = hidden;
+    bool sets = ((below.x != below.y) && !(_e67));
+    float _e71 = part.x;
+    float _e73 = part.y;
+    float _e75 = part.x;
+    float place = (_e71 + ((_e73 - _e75) * (lifted.x / (sets ? (lifted.x - lifted.y) : 1.0))));
+    vec2 crossing = (a.xy + (place * edge.xy));
+    vec2 _e92 = arcs.cosine_entry;
+    arcs.cosine_entry = ((below.x && sets) ? crossing : _e92);
+    vec2 _e98 = arcs.cosine_exit;
+    arcs.cosine_exit = ((below.y && sets) ? crossing : _e98);
+    float _e104 = arcs.crossings.y;
+    arcs.crossings.y = (_e104 + (sets ? 1.0 : 0.0));
+    float _e110 = part.x;
+    float _e115 = part.y;
+    part = vec2(((below.x && sets) ? place : _e110), ((below.y && sets) ? place : _e115));
+    bool _e120 = hidden;
+    hidden = (_e120 || (below.x && below.y));
+    float _e126 = part.x;
+    vec3 begin = (a + (_e126 * edge));
+    float _e130 = part.y;
+    vec3 end = (a + (_e130 * edge));
+    float _e135 = part.y;
+    float _e137 = part.x;
+    vec3 normal = (cross(a, edge) * (_e135 - _e137));
+    float along = dot(begin, end);
+    float radius = sqrt((dot(begin, begin) * dot(end, end)));
+    float sine = sqrt(dot(normal, normal));
+    float x = abs(along);
+    float square = (radius * radius);
+    float over = ((((0.18455717 * x) + (1.330676 * radius)) * x) + (1.5707963 * square));
+    float under = ((((((0.040163346 * x) + (0.5621138 * radius)) * x) + (1.4837523 * square)) * x) + (square * radius));
+    bool obtuse = (along < 0.0);
+    float numerator = (obtuse ? ((LTC_PI * under) - (over * sine)) : over);
+    float denominator = (obtuse ? (under * sine) : under);
+    float _e180 = arcs.sum;
+    bool _e186 = hidden;
+    arcs.sum = (_e180 + (_e186 ? 0.0 : ((normal.z * numerator) / max(denominator, 1e-36))));
+    bool _e192 = arcs.half_turn;
+    bool _e197 = hidden;
+    arcs.half_turn = (_e192 || ((obtuse && (sine < (0.02 * radius))) && !(_e197)));
+    return;
 }
 
-// The same of what is above the horizon of cosine space, of a quad that it cuts or hides.
-LtcPlain ltc_quad_plain_cut(vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
-    vec3 a = vec3(0.0);
-    vec3 b = vec3(0.0);
-    vec3 c = vec3(0.0);
-    vec3 d = vec3(0.0);
-    bool local_4 = false;
-    bool local_5 = false;
-    float sum = 0.0;
-    vec3 exit = vec3(0.0);
-    vec3 entry = vec3(0.0);
-    int i = 0;
-    bool local_6 = false;
-    vec3 begin = vec3(0.0);
-    vec3 end = vec3(0.0);
-    a = v0;
-    b = v1;
-    c = v2;
-    d = v3;
-    float _e9 = a.z;
-    float _e13 = b.z;
-    if (((_e9 >= 0.0) != (_e13 >= 0.0))) {
-        float _e20 = b.z;
-        float _e24 = c.z;
-        local_4 = ((_e20 >= 0.0) != (_e24 >= 0.0));
-    } else {
-        local_4 = false;
-    }
-    bool _e29 = local_4;
-    if (_e29) {
-        float _e33 = c.z;
-        float _e37 = d.z;
-        local_5 = ((_e33 >= 0.0) != (_e37 >= 0.0));
-    } else {
-        local_5 = false;
-    }
-    bool crossed = local_5;
-    if (crossed) {
-        return LtcPlain(0.0, false);
-    }
-    float _e47 = a.z;
-    float _e49 = b.z;
-    float _e52 = c.z;
-    float _e54 = d.z;
-    if ((max(max(_e47, _e49), max(_e52, _e54)) < 0.0)) {
-        return LtcPlain(0.0, true);
-    }
-    bool loop_init = true;
-    while(true) {
-        if (!loop_init) {
-            int _e129 = i;
-            i = (_e129 + 1);
-        }
-        loop_init = false;
-        int _e72 = i;
-        if ((_e72 < 4)) {
-        } else {
-            break;
-        }
-        {
-            float _e76 = a.z;
-            bool a_above = (_e76 >= 0.0);
-            float _e80 = b.z;
-            bool b_above = (_e80 >= 0.0);
-            if (!(a_above)) {
-                local_6 = b_above;
-            } else {
-                local_6 = true;
-            }
-            bool _e87 = local_6;
-            if (_e87) {
-                vec3 _e88 = a;
-                begin = _e88;
-                vec3 _e90 = b;
-                end = _e90;
-                if ((a_above != b_above)) {
-                    vec3 _e93 = a;
-                    vec3 _e95 = b;
-                    float _e98 = a.z;
-                    float _e101 = a.z;
-                    float _e104 = b.z;
-                    vec2 chord = mix(_e93.xy, _e95.xy, (abs(_e98) / (abs(_e101) + abs(_e104))));
-                    vec3 cut = vec3((chord * inversesqrt(max(dot(chord, chord), 0.01))), 0.0);
-                    if (a_above) {
-                        end = cut;
-                        exit = cut;
-                    } else {
-                        begin = cut;
-                        entry = cut;
-                    }
-                }
-                float _e116 = sum;
-                vec3 _e117 = begin;
-                vec3 _e118 = end;
-                vec3 _e119 = begin;
-                vec3 _e120 = end;
-                float _e122 = ltc_plain_edge(_e117, _e118, dot(_e119, _e120));
-                sum = (_e116 + _e122);
-            }
-            vec3 moved = a;
-            vec3 _e125 = b;
-            a = _e125;
-            vec3 _e126 = c;
-            b = _e126;
-            vec3 _e127 = d;
-            c = _e127;
-            d = moved;
-        }
-    }
-    vec3 _e131 = exit;
-    vec3 _e132 = entry;
-    float closing = dot(_e131, _e132);
-    float _e134 = sum;
-    vec3 _e135 = exit;
-    vec3 _e136 = entry;
-    float _e137 = ltc_plain_edge(_e135, _e136, closing);
-    return LtcPlain((_e134 + _e137), (closing >= LTC_PLAIN_COSINE));
-}
-
-// The sum over the edges of a quad that the surface's horizon does not cut (Heitz et al. 2016, eq. 11).
-LtcPlain ltc_quad_plain(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
-    LtcPlain none = LtcPlain(0.0, false);
-    vec3 _e8 = ltc_cosine_from_target(lobe, v0);
-    vec3 _e9 = ltc_cosine_from_target(lobe, v1);
-    vec3 _e10 = ltc_cosine_from_target(lobe, v2);
-    vec3 _e11 = ltc_cosine_from_target(lobe, v3);
-    vec4 squares = vec4(dot(_e8, _e8), dot(_e9, _e9), dot(_e10, _e10), dot(_e11, _e11));
-    if (!((min(min(squares.x, squares.y), min(squares.z, squares.w)) > 1e-30))) {
-        return none;
-    }
-    vec4 shrink = inversesqrt(squares);
-    vec3 a = (_e8 * shrink.x);
-    vec3 b = (_e9 * shrink.y);
-    vec3 c = (_e10 * shrink.z);
-    vec3 d = (_e11 * shrink.w);
-    float ab = dot(a, b);
-    float bc = dot(b, c);
-    float cd = dot(c, d);
-    float da = dot(d, a);
-    if ((min(min(ab, bc), min(cd, da)) < LTC_PLAIN_COSINE)) {
-        return none;
-    }
-    if ((min(min(a.z, b.z), min(c.z, d.z)) < 0.0)) {
-        LtcPlain _e54 = ltc_quad_plain_cut(a, b, c, d);
-        return _e54;
-    }
-    float _e55 = ltc_plain_edge(a, b, ab);
-    float _e56 = ltc_plain_edge(b, c, bc);
-    float _e58 = ltc_plain_edge(c, d, cd);
-    float _e60 = ltc_plain_edge(d, a, da);
-    float sum = (((_e55 + _e56) + _e58) + _e60);
-    return LtcPlain(sum, true);
+// All arcs of the quad; its largest coordinate is about 1.
+LtcArcs ltc_quad_arcs(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
+    LtcArcs arcs = LtcArcs(0.0, vec3(0.0), vec3(0.0), vec2(0.0), vec2(0.0), vec2(0.0), false);
+    vec3 none = vec3(0.0);
+    arcs = LtcArcs(0.0, none, none, none.xy, none.xy, none.xy, false);
+    vec3 _e14 = ltc_cosine_from_target(lobe, v0);
+    vec3 _e16 = ltc_cosine_from_target(lobe, (v1 - v0));
+    vec3 _e18 = ltc_cosine_from_target(lobe, (v2 - v1));
+    vec3 _e20 = ltc_cosine_from_target(lobe, (v3 - v2));
+    vec3 b = (_e14 + _e16);
+    vec3 c = (b + _e18);
+    ltc_arcs_add(arcs, _e14, _e16, vec2(v0.z, v1.z));
+    ltc_arcs_add(arcs, b, _e18, vec2(v1.z, v2.z));
+    ltc_arcs_add(arcs, c, _e20, vec2(v2.z, v3.z));
+    ltc_arcs_add(arcs, (c + _e20), -(((_e16 + _e18) + _e20)), vec2(v3.z, v0.z));
+    vec3 _e40 = arcs.exit;
+    vec3 _e42 = arcs.entry;
+    vec3 _e44 = arcs.exit;
+    ltc_arcs_add(arcs, _e40, (_e42 - _e44), vec2(0.0));
+    vec2 _e49 = arcs.cosine_exit;
+    vec3 exit = vec3(_e49, 0.0);
+    vec2 _e53 = arcs.cosine_entry;
+    ltc_arcs_add(arcs, exit, (vec3(_e53, 0.0) - exit), vec2(0.0));
+    LtcArcs _e59 = arcs;
+    return _e59;
 }
 
 // The fraction of the lobe that sees the quad, in [0, 1]; corners counter-clockwise seen from the emitting side, relative to
 // the shading point in the shading frame. Zero for a degenerate quad, for a shading point in its plane, and behind a
 // one-sided one.
 float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
-    bool local_7 = false;
-    bool local_8 = false;
+    bool local_4 = false;
+    bool local_5 = false;
     vec3 a = vec3(0.0);
     vec3 b = vec3(0.0);
     vec3 c = vec3(0.0);
     vec3 d = vec3(0.0);
-    bool local_9 = false;
-    bool local_10 = false;
-    bool local_11 = false;
+    bool local_6 = false;
+    bool local_7 = false;
+    bool local_8 = false;
     LtcBoundary boundary = LtcBoundary(LtcCorner(vec3(0.0), vec3(0.0)), LtcCorner(vec3(0.0), vec3(0.0)), false, LtcCorner(vec3(0.0), vec3(0.0)), LtcCorner(vec3(0.0), vec3(0.0)), false, false, 0.0);
     int i = 0;
     float _e6 = ltc_largest_component(v0);
@@ -827,107 +760,105 @@ float ltc_quad(LtcLobe lobe, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     float _e9 = ltc_largest_component(v2);
     float _e10 = ltc_largest_component(v3);
     float scale = max(max(_e6, _e7), max(_e9, _e10));
-    float lowest = min(min(v0.z, v1.z), min(v2.z, v3.z));
     bool sunk = (max(max(v0.z, v1.z), max(v2.z, v3.z)) <= 0.0);
     if (!(sunk)) {
         if ((scale > LTC_TINY)) {
-            local_8 = lobe.valid;
+            local_5 = lobe.valid;
         } else {
-            local_8 = false;
+            local_5 = false;
         }
-        bool _e38 = local_8;
-        local_7 = !(_e38);
+        bool _e31 = local_5;
+        local_4 = !(_e31);
     } else {
-        local_7 = true;
+        local_4 = true;
     }
-    bool _e41 = local_7;
-    if (_e41) {
+    bool _e34 = local_4;
+    if (_e34) {
         return 0.0;
     }
     a = (v0 / vec3(scale));
     b = (v1 / vec3(scale));
     c = (v2 / vec3(scale));
     d = (v3 / vec3(scale));
-    bool whole = (lowest >= 0.0);
-    vec3 _e57 = c;
-    vec3 _e58 = a;
-    vec3 _e60 = d;
-    vec3 _e61 = b;
-    vec3 area = cross((_e57 - _e58), (_e60 - _e61));
-    vec3 _e64 = a;
-    float height = dot(area, _e64);
+    vec3 _e48 = c;
+    vec3 _e49 = a;
+    vec3 _e51 = d;
+    vec3 _e52 = b;
+    vec3 area = cross((_e48 - _e49), (_e51 - _e52));
+    vec3 _e55 = a;
+    float height = dot(area, _e55);
     float size = dot(area, area);
-    if (whole) {
-        local_9 = (size > 1e-6);
+    if ((size > 1e-6)) {
+        local_6 = ((height * height) > (1e-6 * size));
     } else {
-        local_9 = false;
+        local_6 = false;
     }
-    bool _e72 = local_9;
-    if (_e72) {
-        local_10 = ((height * height) > (1e-6 * size));
-    } else {
-        local_10 = false;
-    }
-    bool _e80 = local_10;
-    if (_e80) {
+    bool _e67 = local_6;
+    if (_e67) {
         if ((height > 0.0)) {
-            local_11 = true;
+            local_7 = true;
         } else {
-            local_11 = false;
+            local_7 = false;
         }
-        bool _e87 = local_11;
-        if (_e87) {
+        bool _e74 = local_7;
+        if (_e74) {
             return 0.0;
         }
-        vec3 _e89 = a;
-        vec3 _e90 = b;
-        vec3 _e91 = c;
-        vec3 _e92 = d;
-        LtcPlain _e93 = ltc_quad_plain(lobe, _e89, _e90, _e91, _e92);
-        if (_e93.holds) {
-            return clamp((((height < 0.0) ? -(_e93.sum) : _e93.sum) / 6.2831855), 0.0, 1.0);
+        vec3 _e76 = a;
+        vec3 _e77 = b;
+        vec3 _e78 = c;
+        vec3 _e79 = d;
+        LtcArcs _e80 = ltc_quad_arcs(lobe, _e76, _e77, _e78, _e79);
+        if (!(_e80.half_turn)) {
+            local_8 = (max(_e80.crossings.x, _e80.crossings.y) <= 2.0);
+        } else {
+            local_8 = false;
+        }
+        bool _e93 = local_8;
+        if (_e93) {
+            return clamp((((height < 0.0) ? -(_e80.sum) : _e80.sum) / 6.2831855), 0.0, 1.0);
         }
     }
-    vec3 _e106 = c;
-    vec3 _e107 = a;
-    vec3 _e109 = d;
-    vec3 _e110 = b;
-    vec3 _e112 = ltc_cross((_e106 - _e107), (_e109 - _e110));
-    vec3 _e113 = a;
-    float _e115 = ltc_facing(_e112, _e113, 1.0);
-    bool _e116 = ltc_emits_towards(_e115, false);
-    if (!(_e116)) {
+    vec3 _e105 = c;
+    vec3 _e106 = a;
+    vec3 _e108 = d;
+    vec3 _e109 = b;
+    vec3 _e111 = ltc_cross((_e105 - _e106), (_e108 - _e109));
+    vec3 _e112 = a;
+    float _e114 = ltc_facing(_e111, _e112, 1.0);
+    bool _e115 = ltc_emits_towards(_e114, false);
+    if (!(_e115)) {
         return 0.0;
     }
-    LtcBoundary _e119 = ltc_boundary();
-    boundary = _e119;
-    bool loop_init_1 = true;
+    LtcBoundary _e118 = ltc_boundary();
+    boundary = _e118;
+    bool loop_init = true;
     while(true) {
-        if (!loop_init_1) {
-            int _e132 = i;
-            i = (_e132 + 1);
+        if (!loop_init) {
+            int _e131 = i;
+            i = (_e131 + 1);
         }
-        loop_init_1 = false;
-        int _e123 = i;
-        if ((_e123 < 4)) {
+        loop_init = false;
+        int _e122 = i;
+        if ((_e122 < 4)) {
         } else {
             break;
         }
         {
-            vec3 _e126 = a;
-            ltc_boundary_push(boundary, lobe, _e126);
+            vec3 _e125 = a;
+            ltc_boundary_push(boundary, lobe, _e125);
             vec3 moved = a;
-            vec3 _e128 = b;
-            a = _e128;
-            vec3 _e129 = c;
-            b = _e129;
-            vec3 _e130 = d;
-            c = _e130;
+            vec3 _e127 = b;
+            a = _e127;
+            vec3 _e128 = c;
+            b = _e128;
+            vec3 _e129 = d;
+            c = _e129;
             d = moved;
         }
     }
-    float _e134 = ltc_boundary_finish(boundary, lobe);
-    float _e139 = ltc_fraction_of_sum(((_e115 > 0.0) ? -(_e134) : _e134));
-    return clamp(_e139, 0.0, 1.0);
+    float _e133 = ltc_boundary_finish(boundary, lobe);
+    float _e138 = ltc_fraction_of_sum(((_e114 > 0.0) ? -(_e133) : _e133));
+    return clamp(_e138, 0.0, 1.0);
 }
 

@@ -315,11 +315,74 @@ fn ltc_facing(normal: vec3f, point: vec3f, reach: f32) -> f32 {
     return select(0.0, facing, abs(facing) > 9.5367432e-7 * reach * length(normal));
 }
 
-// Flat lights of four corners. No bindings. Needs: math, precise, lobe, boundary, facing.
+// The boundary sum of a quad in straight code, cut by both horizons. No bindings. Needs: math, lobe.
 //
-// Nearly every quad on a screen is plain: above the surface's horizon, not seen edge-on, not tiny, no edge near half a turn. For
-// those, unit vectors and a rational function are as exact as f32 is. All others, and what the surface's horizon cuts, go the
-// way that holds everywhere: products whose leading digits cancel are split, and the clip streams.
+// In cosine space the fraction of the lobe that sees a flat light is the sum of (a x b).z theta / (2 pi sin(theta)) over the arcs of its
+// outline (Heitz et al. 2016, eq. 11), theta the angle between unit vectors a and b. The outline is cut by two planes through
+// the shading point: where it goes below one and comes back, an arc along the horizon closes it. Four edges and two closing arcs are all
+// that a convex quad has.
+
+struct LtcArcs {
+    sum: f32,
+    // Where the outline goes below the surface's horizon, and where it comes back.
+    exit: vec3f,
+    entry: vec3f,
+    // The same of the horizon of cosine space.
+    cosine_exit: vec2f,
+    cosine_entry: vec2f,
+    // How often it crosses each; more than twice in a dent that reaches through, which these arcs do not close.
+    crossings: vec2f,
+    // Whether some arc is so near half a turn that rounding tells.
+    half_turn: bool,
+}
+
+// Adds the arc from `a` along `edge`, in cosine space, whose ends have these heights above the surface.
+fn ltc_arcs_add(arcs: ptr<function, LtcArcs>, a: vec3f, edge: vec3f, heights: vec2f) {
+    var part = vec2f(0.0, 1.0);
+    var hidden = false;
+    let begin = a + part.x * edge;
+    let end = a + part.y * edge;
+    // begin x end, without the part that they have in common, and begin . end: the sine and the cosine, times the radius.
+    let normal = cross(a, edge) * (part.y - part.x);
+    let along = dot(begin, end);
+    let radius = sqrt(dot(begin, begin) * dot(end, end));
+    let sine = sqrt(dot(normal, normal));
+    // theta / (radius sin(theta)) as one fraction: a rational function of the cosine up to a right angle (relative error 2e-8 before
+    // rounding), pi / sine less that beyond.
+    let x = abs(along);
+    let square = radius * radius;
+    let over = (0.18455717 * x + 1.3306760 * radius) * x + 1.5707963 * square;
+    let under = ((0.040163346 * x + 0.56211384 * radius) * x + 1.4837523 * square) * x + square * radius;
+    let obtuse = along < 0.0;
+    let numerator = select(over, LTC_PI * under - over * sine, obtuse);
+    let denominator = select(under, under * sine, obtuse);
+    (*arcs).sum += select(normal.z * numerator / max(denominator, 1e-36), 0.0, hidden);
+    (*arcs).half_turn = (*arcs).half_turn | (obtuse & (sine < 0.02 * radius) & !hidden);
+}
+
+// All arcs of the quad; its largest coordinate is about 1.
+fn ltc_quad_arcs(lobe: LtcLobe, v0: vec3f, v1: vec3f, v2: vec3f, v3: vec3f) -> LtcArcs {
+    let none = vec3f(0.0);
+    var arcs = LtcArcs(0.0, none, none, none.xy, none.xy, none.xy, false);
+    let a = ltc_cosine_from_target(lobe, v0);
+    // Differences of corners first: what distant lights have of their own is in them.
+    let ab = ltc_cosine_from_target(lobe, v1 - v0);
+    let bc = ltc_cosine_from_target(lobe, v2 - v1);
+    let cd = ltc_cosine_from_target(lobe, v3 - v2);
+    let b = a + ab;
+    let c = b + bc;
+    ltc_arcs_add(&arcs, a, ab, vec2f(v0.z, v1.z));
+    ltc_arcs_add(&arcs, b, bc, vec2f(v1.z, v2.z));
+    ltc_arcs_add(&arcs, c, cd, vec2f(v2.z, v3.z));
+    ltc_arcs_add(&arcs, c + cd, -(ab + bc + cd), vec2f(v3.z, v0.z));
+    return arcs;
+}
+
+// Flat lights of four corners. No bindings. Needs: math, precise, lobe, boundary, facing, quad_arcs.
+//
+// Nearly every quad on a screen is plain: not seen edge-on, not tiny, no edge near half a turn, no dent through a horizon. For those
+// straight code over arcs is as exact as f32 is. All others go the way that holds everywhere: products whose leading digits cancel are
+// split, and the clip streams.
 
 // The fraction of the lobe that sees the quad, in [0, 1]; corners counter-clockwise seen from the emitting side, relative to
 // the shading point in the shading frame. Zero for a degenerate quad, for a shading point in its plane, and behind a
@@ -343,18 +406,17 @@ fn ltc_quad(
     var b = v1 / scale;
     var c = v2 / scale;
     var d = v3 / scale;
-    const whole = true;
     // Far beyond where rounding could change the side or the sum.
     let area = cross(c - a, d - b);
     let height = dot(area, a);
     let size = dot(area, area);
-    if whole && size > 1e-6 && height * height > 1e-6 * size {
+    if size > 1e-6 && height * height > 1e-6 * size {
         if height > 0.0 && !two_sided {
             return 0.0;
         }
-        let plain = ltc_quad_plain(lobe, a, b, c, d);
-        if plain.holds {
-            return clamp(select(plain.sum, -plain.sum, height < 0.0) / (2.0 * LTC_PI), 0.0, 1.0);
+        let arcs = ltc_quad_arcs(lobe, a, b, c, d);
+        if !arcs.half_turn && max(arcs.crossings.x, arcs.crossings.y) <= 2.0 {
+            return clamp(select(arcs.sum, -arcs.sum, height < 0.0) / (2.0 * LTC_PI), 0.0, 1.0);
         }
     }
     // The two terms of Newell's sum in one: the cross product of the diagonals.
@@ -375,48 +437,3 @@ fn ltc_quad(
     let sum = ltc_boundary_finish(&boundary, lobe);
     return clamp(ltc_fraction_of_sum(select(sum, -sum, facing > 0.0)), 0.0, 1.0);
 }
-
-struct LtcPlain {
-    // Up to the sign of the winding.
-    sum: f32,
-    // Whether it is as exact as the sum over a boundary.
-    holds: bool,
-}
-
-// Edges whose cosine is below this are left to the boundary sum.
-const LTC_PLAIN_COSINE: f32 = -0.95;
-
-// The z component of the edge's integral, (a x b) theta / sin(theta), for unit vectors.
-fn ltc_plain_edge(a: vec3f, b: vec3f, cosine: f32) -> f32 {
-    let acute = ltc_angle_over_sine(abs(cosine));
-    let obtuse = LTC_PI * inverseSqrt(max(1.0 - cosine * cosine, 0.01)) - acute;
-    return (a.x * b.y - a.y * b.x) * select(acute, obtuse, cosine < 0.0);
-}
-
-// The sum over the edges of a quad that the surface's horizon does not cut (Heitz et al. 2016, eq. 11).
-fn ltc_quad_plain(lobe: LtcLobe, v0: vec3f, v1: vec3f, v2: vec3f, v3: vec3f) -> LtcPlain {
-    let none = LtcPlain(0.0, false);
-    let p0 = ltc_cosine_from_target(lobe, v0);
-    let p1 = ltc_cosine_from_target(lobe, v1);
-    let p2 = ltc_cosine_from_target(lobe, v2);
-    let p3 = ltc_cosine_from_target(lobe, v3);
-    let squares = vec4f(dot(p0, p0), dot(p1, p1), dot(p2, p2), dot(p3, p3));
-    if !(min(min(squares.x, squares.y), min(squares.z, squares.w)) > 1e-30) {
-        return none;
-    }
-    let shrink = inverseSqrt(squares);
-    let a = p0 * shrink.x;
-    let b = p1 * shrink.y;
-    let c = p2 * shrink.z;
-    let d = p3 * shrink.w;
-    let ab = dot(a, b);
-    let bc = dot(b, c);
-    let cd = dot(c, d);
-    let da = dot(d, a);
-    if min(min(ab, bc), min(cd, da)) < LTC_PLAIN_COSINE {
-        return none;
-    }
-    let sum = ltc_plain_edge(a, b, ab) + ltc_plain_edge(b, c, bc) + ltc_plain_edge(c, d, cd) + ltc_plain_edge(d, a, da);
-    return LtcPlain(sum, true);
-}
-
