@@ -102,6 +102,7 @@ pub(crate) fn channel_infos() -> Vec<ChannelInfo> {
         name: name.to_owned(),
         shape: shape.to_vec(),
         meaning: meaning.to_owned(),
+        closed_form: None,
     };
     vec![
         info("m", &[3, 3], "row-major matrix, cosine space to lobe; interpolate it, then invert"),

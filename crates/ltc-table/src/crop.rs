@@ -45,7 +45,8 @@ impl Part {
 impl Table {
     /// The smallest table whose nodes still surround `[low, high]` of a quantity, its entries unchanged.
     ///
-    /// Lookups inside the range give what the whole table gives (to rounding); outside it they go to its ends.
+    /// Lookups inside the range give what the whole table gives (to rounding); outside it they go to its ends
+    /// (but for its closed form, which is taken at the query).
     ///
     /// # Errors
     /// [`TableError::BadAxis`] when the table has no such axis, or the range is empty, not finite, or outside of it.
@@ -80,7 +81,8 @@ impl Table {
                 leak: kept(&self.cells().leak, keep),
                 condition: kept(&self.cells().condition, keep),
             },
-        )
+        )?
+        .with_closed_form(self.closed_form())
     }
 }
 
@@ -92,7 +94,7 @@ fn kept<T: Copy>(values: &[T], keep: impl Fn(usize) -> bool) -> Vec<T> {
 mod tests {
     use super::*;
     use crate::{
-        Query,
+        ClosedForm, Query,
         testing::{anisotropic, isotropic},
     };
 
@@ -111,6 +113,18 @@ mod tests {
         let query = Query { theta: 0.3, phi: 0.0, alpha_x: 0.5, alpha_y: 0.5 };
         let (a, b) = (isotropic().lookup(&query).unwrap(), curved.lookup(&query).unwrap());
         assert!((a.magnitude - b.magnitude).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_crop_keeps_the_closed_form() {
+        let whole = anisotropic().with_closed_form(Some(ClosedForm::GgxSmith)).unwrap();
+        let part = whole.crop(Quantity::Alpha, 0.4, 0.9).unwrap();
+        assert_eq!(part.closed_form(), whole.closed_form());
+        let query = Query { theta: 1.3, phi: 2.2, alpha_x: 0.45, alpha_y: 0.85 };
+        let (a, b) = (whole.lookup(&query).unwrap(), part.lookup(&query).unwrap());
+        assert!((a.magnitude - b.magnitude).abs() < 1e-14 && (a.fresnel - b.fresnel).abs() < 1e-14);
+        let plain = part.with_closed_form(None).unwrap().lookup(&query).unwrap();
+        assert!((a.magnitude - plain.magnitude).abs() > 1e-3, "the form changes nothing here");
     }
 
     #[test]

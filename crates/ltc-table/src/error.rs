@@ -70,6 +70,19 @@ pub enum TableError {
         /// About what.
         what: String,
     },
+    /// A payload's closed form is not one of [`ClosedForm`](crate::ClosedForm).
+    #[error(
+        "closed_form: {code} is no form known here; there is: 1 (ggx-smith). A newer version of this program may know it"
+    )]
+    UnknownClosedForm {
+        /// The number in the payload.
+        code: f64,
+    },
+    /// Only anisotropic tables have a closed form.
+    #[error(
+        "closed_form: the table is isotropic, only anisotropic ones (theta, phi, alpha, lambda) have one"
+    )]
+    NoClosedForm,
     /// An archive is not readable.
     #[error("npz: {reason}")]
     Npz {

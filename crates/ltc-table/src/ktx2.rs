@@ -1,6 +1,9 @@
 //! KTX2: the table as a texture file.
 //!
-//! Three RGBA groups hold the eleven channels: `m00 m01 m02 m10`, `m11 m12 m20 m21`, `m22 magnitude fresnel 0`.
+//! Three RGBA groups hold the eleven channels: `m00 m01 m02 m10`, `m11 m12 m20 m21`, `m22 magnitude fresnel 0`. For a table with
+//! a [`ClosedForm`](crate::ClosedForm) the third is `m22 remainder(magnitude) remainder(fresnel) code`: the fourth number,
+//! [`ClosedForm::code`](crate::ClosedForm::code) (1), tells shaders to add the form's value at the query and to clamp both
+//! sums to [0, 1]. It is the same in all entries, so that interpolation leaves it as it is.
 //! - An isotropic table is a 2D array texture: x = α nodes, y = θ nodes, one layer a group.
 //! - An anisotropic table is a 3D texture: x = λ nodes, y = α nodes, z = φ nodes + `len(φ)` · (θ node + `len(θ)` · group).
 //!   Filter x, y and, within one θ, z by hardware; blend the two θ by hand.
@@ -9,7 +12,7 @@
 
 use ltc_core::Matrix;
 
-use crate::{Kind, Precision, Table, TableError};
+use crate::{ClosedForm, Kind, Precision, Table, TableError};
 
 const IDENTIFIER: [u8; 12] = [0xAB, b'K', b'T', b'X', b' ', b'2', b'0', 0xBB, b'\r', b'\n', 0x1A, b'\n'];
 /// Identifier, header, index.
@@ -21,11 +24,13 @@ pub const GROUPS: usize = 3;
 /// The texels of a table: for each group, for each entry in table order, four numbers.
 pub fn texels(table: &Table) -> Vec<[f64; 4]> {
     let mut groups: [Vec<[f64; 4]>; GROUPS] = Default::default();
-    for ((m, magnitude), fresnel) in table.m().iter().zip(table.magnitude()).zip(table.fresnel()) {
+    let code = table.closed_form().map_or(0.0, ClosedForm::code);
+    for (i, m) in table.m().iter().enumerate() {
         let m = m.to_row_array();
+        let [n, f] = table.remainders().map_or([table.magnitude()[i], table.fresnel()[i]], |r| r[i]);
         groups[0].push([m[0], m[1], m[2], m[3]]);
         groups[1].push([m[4], m[5], m[6], m[7]]);
-        groups[2].push([m[8], *magnitude, *fresnel, 0.0]);
+        groups[2].push([m[8], n, f, code]);
     }
     groups.concat()
 }
@@ -43,7 +48,8 @@ pub fn write(table: &Table, precision: Precision, manifest: &str) -> Result<Vec<
             return Err(TableError::NoSuchPrecision { format: "KTX2", precision: precision.name() });
         }
     };
-    let table = &table.rounded(precision)?;
+    // Whether it can be held. Remainders are rounded themselves, not the sums that they are left of.
+    table.rounded(precision)?;
     let descriptor = data_format_descriptor(precision);
     let metadata = key_value_data(manifest);
     let descriptor_at = HEADER_BYTES + LEVEL_INDEX_BYTES;
@@ -146,6 +152,31 @@ mod tests {
             let m = table.m()[7].to_row_array();
             assert_eq!(numbers[4 * 7 + 3], m[3] as f32, "group 0, entry 7, fourth channel is m10");
         }
+    }
+
+    #[test]
+    fn a_closed_form_leaves_remainders_and_says_so() {
+        let plain = anisotropic();
+        let table = plain.clone().with_closed_form(Some(ClosedForm::GgxSmith)).unwrap();
+        let (with, without) = (texels(&table), texels(&plain));
+        let entries = plain.m().len();
+        assert_eq!(with[..2 * entries], without[..2 * entries]);
+        let g = ClosedForm::GgxSmith.at_entries(plain.axes()).unwrap();
+        let mut differ = 0;
+        for i in 0..entries {
+            let ([m22, n, f, code], [m22_plain, n_plain, f_plain, none]) =
+                (with[2 * entries + i], without[2 * entries + i]);
+            assert_eq!((m22, code, none), (m22_plain, 1.0, 0.0));
+            assert_eq!([n, f], [n_plain - g[i][0], f_plain - g[i][1]]);
+            differ += usize::from(n != n_plain || f != f_plain);
+        }
+        assert!(differ > entries / 2, "the form changes too little to be seen");
+        // Remainders are rounded once.
+        let bytes = write(&table, Precision::F16, "{}").unwrap();
+        let level = ktx2::Reader::new(&bytes).unwrap().levels().next().unwrap().data.to_vec();
+        let halves: Vec<f64> = level.as_chunks::<2>().0.iter().map(|b| Precision::F16.get(b)).collect();
+        let rounded: Vec<f64> = with.concat().into_iter().map(|v| Precision::F16.round(v)).collect();
+        assert_eq!(halves, rounded);
     }
 
     #[test]

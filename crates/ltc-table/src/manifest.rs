@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Axis;
+use crate::{Axis, ClosedForm};
 
 /// The manifest of one table version; `manifest.json` beside the payload.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,6 +50,10 @@ pub struct ChannelInfo {
     pub shape: Vec<usize>,
     /// What it means.
     pub meaning: String,
+    /// The formula whose values at the entries are to be taken off before interpolation and whose value at the query is to be
+    /// added to it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub closed_form: Option<ClosedForm>,
 }
 
 /// Smallest values that the fit evaluated the BRDF at.

@@ -8,7 +8,7 @@ use ltc_core::Matrix;
 use npyz::WriterBuilder;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter, write::SimpleFileOptions};
 
-use crate::{Axis, CellStats, Channels, Precision, Table, TableError};
+use crate::{Axis, CellStats, Channels, ClosedForm, Precision, Table, TableError};
 
 /// Arrays larger than this are refused on reading: no table is.
 const MAX_ARRAY_BYTES: u64 = 1 << 30;
@@ -17,8 +17,12 @@ fn npz_error(reason: impl ToString) -> TableError {
     TableError::Npz { reason: reason.to_string() }
 }
 
-/// Writes the table's arrays: `m` (axes, then 3×3 row-major), `magnitude`, `fresnel`, `axis_<quantity>`, and
-/// `cell_tv`, `cell_leak`, `cell_condition` where the table has them. The same table gives the same bytes.
+/// Writes the table's arrays: `m` (axes, then 3×3 row-major), `magnitude`, `fresnel`, `axis_<quantity>`, and where the table
+/// has them `closed_form` (one number, [`ClosedForm::code`]), `cell_tv`, `cell_leak`, `cell_condition`. The same table gives
+/// the same bytes.
+///
+/// `magnitude` and `fresnel` are values at the entries also where there is a closed form: a reader that knows nothing of it and
+/// interpolates them gets both channels less exactly.
 ///
 /// # Errors
 /// [`TableError::PrecisionLoss`] or [`TableError::BadEntry`] where `precision` cannot hold the table.
@@ -35,6 +39,9 @@ pub fn write(table: &Table, precision: Precision, channels: Channels) -> Result<
     }
     if channels.fresnel {
         archive.array("fresnel", &shape, table.fresnel())?;
+    }
+    if let Some(form) = table.closed_form().filter(|_| channels.magnitude || channels.fresnel) {
+        archive.exact("closed_form", &[], &[form.code()])?;
     }
     for axis in table.axes() {
         // Nodes keep full precision: a reader that interpolates needs them exact.
@@ -68,16 +75,17 @@ pub fn read(bytes: &[u8], axes: &[Axis]) -> Result<Table, TableError> {
     let m = rows.as_chunks::<9>().0.iter().map(|rows| DMat3::from_row_array(*rows)).collect();
     let magnitude = read_array(&mut archive, "magnitude", &shape)?;
     let fresnel = read_array(&mut archive, "fresnel", &shape)?;
-    let mut optional = |name: &str| {
+    let mut optional = |name: &str, shape: &[u64]| {
         let present = archive.index_for_name(&format!("{name}.npy")).is_some();
-        if present { read_array(&mut archive, name, &shape) } else { Ok(Vec::new()) }
+        if present { read_array(&mut archive, name, shape) } else { Ok(Vec::new()) }
     };
+    let closed_form = optional("closed_form", &[])?.first().map(|code| ClosedForm::from_code(*code));
     let cells = CellStats {
-        tv: optional("cell_tv")?,
-        leak: optional("cell_leak")?,
-        condition: optional("cell_condition")?,
+        tv: optional("cell_tv", &shape)?,
+        leak: optional("cell_leak", &shape)?,
+        condition: optional("cell_condition", &shape)?,
     };
-    Table::new(axes.to_vec(), m, magnitude, fresnel, cells)
+    Table::new(axes.to_vec(), m, magnitude, fresnel, cells)?.with_closed_form(closed_form.transpose()?)
 }
 
 fn check_nodes(axis: &Axis, nodes: &[f64]) -> Result<(), TableError> {
@@ -179,6 +187,51 @@ mod tests {
             let bytes = write(&table, precision, Channels::ALL).unwrap();
             assert_eq!(read(&bytes, table.axes()).unwrap(), table.rounded(precision).unwrap());
         }
+    }
+
+    #[test]
+    fn the_closed_form_comes_back_at_all_precisions() {
+        let plain = anisotropic();
+        let table = plain.clone().with_closed_form(Some(ClosedForm::GgxSmith)).unwrap();
+        for precision in Precision::ALL {
+            let bytes = write(&table, precision, Channels::ALL).unwrap();
+            let back = read(&bytes, table.axes()).unwrap();
+            assert_eq!(back.closed_form(), Some(ClosedForm::GgxSmith));
+            assert_eq!(back, table.rounded(precision).unwrap());
+            let without = read(&write(&plain, precision, Channels::ALL).unwrap(), plain.axes()).unwrap();
+            assert_eq!(without.closed_form(), None);
+            assert_eq!((back.magnitude(), back.fresnel()), (without.magnitude(), without.fresnel()));
+        }
+        let holds = |channels| {
+            let bytes = write(&table, Precision::F32, channels).unwrap();
+            ZipArchive::new(Cursor::new(&bytes[..])).unwrap().index_for_name("closed_form.npy").is_some()
+        };
+        assert!(holds(Channels::FRESNEL) && holds(Channels::SHADING));
+        assert!(!holds(Channels { magnitude: false, fresnel: false, ..Channels::ALL }));
+    }
+
+    #[test]
+    fn an_unknown_closed_form_is_refused() {
+        let rewritten = |table: &Table, code: &[f64]| {
+            let bytes = write(table, Precision::F64, Channels::ALL).unwrap();
+            let mut from = ZipArchive::new(Cursor::new(&bytes[..])).unwrap();
+            let mut to = Archive::new(Precision::F64);
+            for i in 0..from.len() {
+                let mut entry = from.by_index(i).unwrap();
+                let (name, mut bytes) =
+                    (entry.name().unwrap().trim_end_matches(".npy").to_owned(), Vec::new());
+                entry.read_to_end(&mut bytes).unwrap();
+                to.entry(&name, &bytes).unwrap();
+            }
+            let shape: &[u64] = if code.len() == 1 { &[] } else { &[2] };
+            to.exact("closed_form", shape, code).unwrap();
+            read(&to.finish().unwrap(), table.axes())
+        };
+        assert_eq!(rewritten(&anisotropic(), &[1.0]).unwrap().closed_form(), Some(ClosedForm::GgxSmith));
+        let error = rewritten(&anisotropic(), &[7.0]).unwrap_err();
+        assert!(error.to_string().starts_with("closed_form: 7 is no form known here"), "{error}");
+        assert!(matches!(rewritten(&isotropic(), &[1.0]), Err(TableError::NoClosedForm)));
+        assert!(matches!(rewritten(&anisotropic(), &[1.0, 1.0]), Err(TableError::Disagreement { .. })));
     }
 
     #[test]

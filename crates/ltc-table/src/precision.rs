@@ -104,7 +104,8 @@ impl Table {
             channel("magnitude", self.magnitude())?,
             channel("fresnel", self.fresnel())?,
             self.cells().clone(),
-        )
+        )?
+        .with_closed_form(self.closed_form())
     }
 }
 

@@ -3,7 +3,10 @@
 use glam::DMat3;
 use ltc_core::{Ltc, Matrix};
 
-use crate::{Axis, Lobe, Lookup, Quantity, Query, TableError, lookup::Corner};
+use crate::{
+    Axis, ClosedForm, Folded, Lobe, Lookup, Quantity, Query, TableError, closed_form::direction,
+    lookup::Corner,
+};
 
 /// Error statistics of each entry, in table order.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,7 +21,8 @@ pub struct CellStats {
 
 /// A table of LTCs: for every node of the axes a matrix, a magnitude and a Fresnel term.
 ///
-/// Entries are in C order of the axes: the last axis varies fastest.
+/// Entries are in C order of the axes: the last axis varies fastest. Magnitude and Fresnel term are values at the entries, with
+/// a [`ClosedForm`] or without: it changes what is interpolated between them, see [`Table::lookup`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     axes: Vec<Axis>,
@@ -26,6 +30,15 @@ pub struct Table {
     magnitude: Vec<f64>,
     fresnel: Vec<f64>,
     cells: CellStats,
+    remainders: Option<Remainders>,
+}
+
+/// What a closed form leaves of the channels.
+#[derive(Clone, Debug, PartialEq)]
+struct Remainders {
+    form: ClosedForm,
+    /// Magnitude and Fresnel term of each entry less the form's values there.
+    values: Vec<[f64; 2]>,
 }
 
 /// The two kinds of tables there are.
@@ -70,7 +83,24 @@ impl Table {
         check_length("cell_leak", cells.leak.len(), true)?;
         check_length("cell_condition", cells.condition.len(), true)?;
         check_entries(&m, &magnitude, &fresnel)?;
-        Ok(Self { axes, m, magnitude, fresnel, cells })
+        Ok(Self { axes, m, magnitude, fresnel, cells, remainders: None })
+    }
+
+    /// The table with another closed form, or none: its entries are the same, lookups between them are not.
+    ///
+    /// # Errors
+    /// [`TableError::NoClosedForm`] for an isotropic table, unless there is to be none.
+    pub fn with_closed_form(mut self, form: Option<ClosedForm>) -> Result<Self, TableError> {
+        self.remainders = match form {
+            None => None,
+            Some(form) => {
+                let entries = self.magnitude.iter().zip(&self.fresnel);
+                let values =
+                    entries.zip(form.at_entries(&self.axes)?).map(|((n, f), g)| [n - g[0], f - g[1]]);
+                Some(Remainders { form, values: values.collect() })
+            }
+        };
+        Ok(self)
     }
 
     /// The axes, slowest first.
@@ -103,6 +133,17 @@ impl Table {
         &self.fresnel
     }
 
+    /// The formula that lookups add to what they interpolate, if the table has one.
+    pub fn closed_form(&self) -> Option<ClosedForm> {
+        self.remainders.as_ref().map(|r| r.form)
+    }
+
+    /// Magnitude and Fresnel term of each entry less the closed form's values there: what lookups interpolate. `None` without
+    /// a closed form.
+    pub fn remainders(&self) -> Option<&[[f64; 2]]> {
+        self.remainders.as_ref().map(|r| &r.values[..])
+    }
+
     /// Statistics of each entry; arrays may be empty.
     pub fn cells(&self) -> &CellStats {
         &self.cells
@@ -130,6 +171,9 @@ impl Table {
     /// An isotropic table's entries have φ = 0; its lobe is turned by φ: `M(φ) = R_z(φ) M(0) R_z(−φ)`. det M > 0 always:
     /// where interpolation comes to a matrix without, the nearest entry answers.
     ///
+    /// With a [closed form](ClosedForm) `g`, magnitude and Fresnel term are `clamp(g(query) + Σ wᵢ (entryᵢ − g(nodeᵢ)), 0, 1)`. `g` is
+    /// taken at the widths asked for, also where they lie outside of the axes.
+    ///
     /// # Errors
     /// [`TableError::Input`] for an invalid query, [`TableError::NotIsotropic`] where an isotropic table is asked for
     /// α_x ≠ α_y.
@@ -146,8 +190,11 @@ impl Table {
                 Ok(Lookup::single(turn * m * turn.transpose(), magnitude, fresnel))
             }
             Kind::Anisotropic => {
-                let (m, magnitude, fresnel) =
-                    self.interpolate([folded.theta, folded.phi, folded.alpha, folded.lambda]);
+                let values = [folded.theta, folded.phi, folded.alpha, folded.lambda];
+                let (m, mut magnitude, mut fresnel) = self.interpolate(values);
+                if let Some(remainders) = &self.remainders {
+                    [magnitude, fresnel] = remainders.interpolate(&self.axes, &folded);
+                }
                 Ok(Lookup::single(folded.unfold(m), magnitude, fresnel))
             }
         }
@@ -176,6 +223,21 @@ impl Table {
             result.0 = self.m[nearest.index];
         }
         result
+    }
+}
+
+impl Remainders {
+    /// Magnitude and Fresnel term of a query.
+    fn interpolate(&self, axes: &[Axis], query: &Folded) -> [f64; 2] {
+        let Folded { theta, phi, alpha, lambda, .. } = *query;
+        // The form is the same for the folded query, and so for all that fold to it, to the last bit.
+        let mut sum = self.form.at(direction(theta, phi), alpha, alpha * lambda);
+        for Corner { index, weight } in crate::lookup::corners(axes, [theta, phi, alpha, lambda]) {
+            for (sum, remainder) in sum.iter_mut().zip(self.values[index]) {
+                *sum += weight * remainder;
+            }
+        }
+        sum.map(|x| x.clamp(0.0, 1.0))
     }
 }
 
@@ -289,6 +351,77 @@ mod tests {
             fallbacks += u32::from(table.m.contains(&m));
         }
         assert!(fallbacks > 3, "the case never came up");
+    }
+
+    /// The table with the form, and its lookup of `query` worked out from corners and formula.
+    fn by_hand(table: &Table, query: &Query) -> [f64; 2] {
+        let Folded { theta, phi, alpha, lambda, .. } = query.fold().unwrap();
+        let form = ClosedForm::GgxSmith;
+        let mut sum = form.at(direction(query.theta, query.phi), query.alpha_x, query.alpha_y);
+        for Corner { index, weight } in crate::lookup::corners(table.axes(), [theta, phi, alpha, lambda]) {
+            let [t, p, a, l] = [0, 1, 2, 3].map(|k| table.nodes_of(index)[k].1);
+            let at = form.at(direction(t, p), a, a * l);
+            sum[0] += weight * (table.magnitude()[index] - at[0]);
+            sum[1] += weight * (table.fresnel()[index] - at[1]);
+        }
+        sum.map(|x| x.clamp(0.0, 1.0))
+    }
+
+    #[test]
+    fn with_a_closed_form_remainders_are_interpolated() {
+        let plain = anisotropic();
+        let table = plain.clone().with_closed_form(Some(ClosedForm::GgxSmith)).unwrap();
+        let mut random = ltc_core::points::SplitMix64::new(1);
+        let mut differ = 0;
+        for i in 0..2000 {
+            let mut width = || 10.0_f64.powf(-4.0 * random.unit());
+            let (alpha_x, alpha_y) = (width(), width());
+            let theta = if i % 10 == 0 { FRAC_PI_2 } else { random.range(0.0, FRAC_PI_2) };
+            let query = query(theta, random.range(-9.0, 9.0), alpha_x, alpha_y);
+            let (found, without) = (table.lookup(&query).unwrap(), plain.lookup(&query).unwrap());
+            let [n, f] = by_hand(&table, &query);
+            assert!((found.magnitude - n).abs() < 1e-13 && (found.fresnel - f).abs() < 1e-13, "{query:?}");
+            assert_eq!(found.lobes, without.lobes);
+            let mirrored = Query { phi: -query.phi, ..query };
+            let swapped = Query { phi: FRAC_PI_2 - query.phi, alpha_x: alpha_y, alpha_y: alpha_x, ..query };
+            for other in [mirrored, swapped] {
+                let other = table.lookup(&other).unwrap();
+                assert!((other.magnitude - n).abs() < 1e-12 && (other.fresnel - f).abs() < 1e-12);
+            }
+            differ += u32::from((found.fresnel - without.fresnel).abs() > 1e-3);
+        }
+        assert!(differ > 500, "the form changes too little to be seen: {differ}");
+        let back = table.with_closed_form(None).unwrap();
+        assert_eq!(back, plain);
+    }
+
+    #[test]
+    fn at_entries_a_closed_form_changes_nothing() {
+        let plain = anisotropic();
+        let table = plain.clone().with_closed_form(Some(ClosedForm::GgxSmith)).unwrap();
+        assert_ne!(table, plain);
+        for (index, [g_n, g_f]) in
+            ClosedForm::GgxSmith.at_entries(plain.axes()).unwrap().into_iter().enumerate()
+        {
+            assert_eq!(
+                table.remainders().unwrap()[index],
+                [plain.magnitude[index] - g_n, plain.fresnel[index] - g_f]
+            );
+            let [theta, phi, alpha, lambda] = [0, 1, 2, 3].map(|k| plain.nodes_of(index)[k].1);
+            // The made-up table's first nodes of α and λ are 0, which a query has no names for.
+            if alpha > 0.0 && lambda > 0.0 {
+                let found = table.lookup(&query(theta, phi, alpha, alpha * lambda)).unwrap();
+                assert!((found.magnitude - plain.magnitude[index]).abs() < 1e-9);
+                assert!((found.fresnel - plain.fresnel[index]).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn an_isotropic_table_has_no_closed_form() {
+        let error = isotropic().with_closed_form(Some(ClosedForm::GgxSmith)).unwrap_err();
+        assert!(matches!(error, TableError::NoClosedForm));
+        assert_eq!(isotropic().with_closed_form(None).unwrap(), isotropic());
     }
 
     #[test]

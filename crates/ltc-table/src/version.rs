@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use crate::{Channels, Manifest, Precision, Table, TableError, digest::digest, files, npz};
+use crate::{
+    ChannelInfo, Channels, ClosedForm, Manifest, Precision, Table, TableError, digest::digest, files, npz,
+};
 
 /// The payload's file name.
 pub const PAYLOAD_FILE: &str = "table.npz";
@@ -35,6 +37,7 @@ impl TableVersion {
             return Err(TableError::Disagreement { what });
         }
         let table = npz::read(&payload, &manifest.axes)?;
+        check_closed_form(&manifest, &table)?;
         Ok(Self { manifest, payload, table })
     }
 
@@ -107,6 +110,21 @@ impl TableVersion {
     }
 }
 
+/// Who reads only the manifest must interpolate as who reads only the payload does.
+fn check_closed_form(manifest: &Manifest, table: &Table) -> Result<(), TableError> {
+    let name = |form: Option<ClosedForm>| form.map_or("none", ClosedForm::name);
+    let held = |channel: &&ChannelInfo| ["magnitude", "fresnel"].contains(&&channel.name[..]);
+    match manifest.channels.iter().filter(held).find(|c| c.closed_form != table.closed_form()) {
+        None => Ok(()),
+        Some(ChannelInfo { name: channel, closed_form, .. }) => {
+            let (stated, found) = (name(*closed_form), name(table.closed_form()));
+            let what =
+                format!("the closed form of {channel}: {stated} in the manifest, {found} in the payload");
+            Err(TableError::Disagreement { what })
+        }
+    }
+}
+
 /// # Errors
 /// [`TableError::BadName`] unless `name` is 1 to 64 of a–z, 0–9 and `-`, a letter first: safe in paths and URLs.
 pub fn check_name(name: &str) -> Result<(), TableError> {
@@ -139,6 +157,29 @@ mod tests {
         std::fs::write(&path, bytes).unwrap();
         let error = TableVersion::read_folder(folder.path()).unwrap_err();
         assert!(matches!(error, TableError::DigestMismatch { .. }), "{error}");
+    }
+
+    #[test]
+    fn manifest_and_payload_name_the_same_closed_form() {
+        let table = anisotropic().with_closed_form(Some(ClosedForm::GgxSmith)).unwrap();
+        for (held, table) in [(None, anisotropic()), (Some(ClosedForm::GgxSmith), table)] {
+            let version = version("test", 1, table);
+            for stated in [None, Some(ClosedForm::GgxSmith)] {
+                let channel = |name: &str| ChannelInfo {
+                    name: name.into(),
+                    shape: Vec::new(),
+                    meaning: String::new(),
+                    closed_form: if name == "m" { None } else { stated },
+                };
+                let channels = ["m", "magnitude", "fresnel"].map(channel).into();
+                let manifest = Manifest { channels, ..version.manifest().clone() };
+                let json = serde_json::to_string(&manifest).unwrap();
+                assert_eq!(json.contains("\"closed_form\":\"ggx-smith\""), stated.is_some());
+                let joined = TableVersion::from_json(json.as_bytes(), version.payload().to_vec());
+                assert_eq!(joined.is_ok(), held == stated);
+                assert!(joined.map_or(true, |back| back.table() == version.table()));
+            }
+        }
     }
 
     #[test]

@@ -82,6 +82,9 @@ fn arrays(table: &Table, channels: Channels) -> BTreeMap<String, Array<'_>> {
         let shape = [&shape[..], &[3, 3]].concat();
         arrays.insert("m".to_owned(), Array { shape, values: rows.into() });
     }
+    if let Some(form) = table.closed_form().filter(|_| channels.magnitude || channels.fresnel) {
+        arrays.insert("closed_form".to_owned(), Array { shape: vec![1], values: vec![form.code()].into() });
+    }
     let cells = table.cells();
     for (name, values, chosen) in [
         ("magnitude", table.magnitude(), channels.magnitude),

@@ -12,7 +12,8 @@ use ltc_fit::measure::{self, MeasureSettings};
 use ltc_fit::{Brdf, Cost, FitSpec, Layout, brdf};
 use ltc_table::digest::digest;
 use ltc_table::{
-    Axis, BrdfInfo, CellStats, ChannelInfo, Floors, Manifest, Quantity, Table, TableError, TableVersion, npz,
+    Axis, BrdfInfo, CellStats, ChannelInfo, ClosedForm, Floors, Manifest, Quantity, Table, TableError,
+    TableVersion, npz,
 };
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -133,7 +134,7 @@ fn measured(name: &str, uploaded: &Uploaded) -> Result<(Value, Vec<u8>), String>
         digest: digest(&payload),
         payload_bytes: payload.len() as u64,
         axes: stated.axes,
-        channels: channels(),
+        channels: channels(table.closed_form()),
         lobes: 1,
         normalisation: stated.normalisation.unwrap_or_else(|| "as it came; the lobe of an entry does not depend on scale".to_owned()),
         handedness: "right-handed frame, x = tangent (alpha_x), z = normal; m maps cosine space to the lobe; det m > 0".to_owned(),
@@ -190,10 +191,11 @@ fn check_floors(floors: &Floors) -> Result<(), String> {
 
 fn payload(table: &Table, cells: CellStats) -> Result<Vec<u8>, TableError> {
     let (m, magnitude, fresnel) = (table.m().to_vec(), table.magnitude().to_vec(), table.fresnel().to_vec());
-    TableVersion::payload_of(&Table::new(table.axes().to_vec(), m, magnitude, fresnel, cells)?)
+    let measured = Table::new(table.axes().to_vec(), m, magnitude, fresnel, cells)?;
+    TableVersion::payload_of(&measured.with_closed_form(table.closed_form())?)
 }
 
-fn channels() -> Vec<ChannelInfo> {
+fn channels(closed_form: Option<ClosedForm>) -> Vec<ChannelInfo> {
     [
         ("m", &[3, 3][..], "row-major matrix, cosine space to lobe; interpolate it, then invert"),
         ("magnitude", &[], "n = integral of rho cos at F = 1 (base colour 1)"),
@@ -206,6 +208,7 @@ fn channels() -> Vec<ChannelInfo> {
         name: name.to_owned(),
         shape: shape.to_vec(),
         meaning: meaning.to_owned(),
+        closed_form: closed_form.filter(|_| ["magnitude", "fresnel"].contains(&name)),
     })
     .into()
 }
