@@ -4,7 +4,8 @@ use core::f64::consts::FRAC_PI_2;
 
 use glam::DMat3;
 use ltc_core::{Alpha, Matrix as _};
-use ltc_table::{Kind, Lookup, Precision, Query, Table, TableError, ktx2};
+use ltc_table::lookup::{Corner, corners};
+use ltc_table::{Kind, Precision, Query, Table, TableError, ktx2};
 
 use crate::layout::AxesUniform;
 use crate::table_textures::{Storage, View, check_extent, create, precision};
@@ -45,11 +46,8 @@ impl BakedSlices {
             depth_or_array_layers: (widths.len() * ktx2::GROUPS) as u32,
         };
         check_extent(gpu, Kind::Isotropic, size)?;
-        let slices: Vec<Vec<Lookup>> = widths
-            .iter()
-            .map(|alpha| slice(table, *alpha))
-            .collect::<Result<_, _>>()
-            .map_err(GpuError::from)?;
+        let slices: Vec<Vec<[f64; 12]>> =
+            widths.iter().map(|alpha| slice(table, *alpha)).collect::<Result<_, _>>()?;
         let bytes = bytes(precision(gpu), &slices)?;
         let texels = gpu.checked(|| Ok(create(gpu, Kind::Isotropic, size, &bytes)))?;
         let widths = widths.iter().map(|alpha| [alpha.x() as f32, alpha.y() as f32]).collect();
@@ -86,30 +84,47 @@ impl BakedSlices {
     }
 }
 
-/// The table's answers at all nodes of θ and φ, θ the slower, for views in the quadrant that the table holds.
-fn slice(table: &Table, alpha: Alpha) -> Result<Vec<Lookup>, TableError> {
+/// The table's answers at all nodes of θ and φ, θ the slower, for views in the quadrant that the table holds; numbers as in a
+/// table's texels.
+fn slice(table: &Table, alpha: Alpha) -> Result<Vec<[f64; 12]>, TableError> {
     let [theta, phi, ..] = table.axes() else { return Ok(Vec::new()) };
     // Folded: the shader takes x and y apart again.
     let (alpha_x, alpha_y) = (alpha.x().max(alpha.y()), alpha.x().min(alpha.y()));
     let in_domain = |nodes: Vec<f64>| nodes.into_iter().map(|x| x.min(FRAC_PI_2));
     let views =
         in_domain(theta.nodes()).flat_map(|theta| in_domain(phi.nodes()).map(move |phi| (theta, phi)));
-    views.map(|(theta, phi)| table.lookup(&Query { theta, phi, alpha_x, alpha_y })).collect()
+    let entry = |(theta, phi)| {
+        let found = table.lookup(&Query { theta, phi, alpha_x, alpha_y })?;
+        let [a, b, c, d, e, f, g, h, i] = found.lobes[0].m;
+        let at = [theta, phi, alpha_x, alpha_y / alpha_x];
+        let [n, f_term, code] = channels(table, at).unwrap_or([found.magnitude, found.fresnel, 0.0]);
+        Ok([a, b, c, d, e, f, g, h, i, n, f_term, code])
+    };
+    views.map(entry).collect()
+}
+
+/// What a closed form leaves of both channels, and its code.
+fn channels(table: &Table, at: [f64; 4]) -> Option<[f64; 3]> {
+    let (form, remainders) = (table.closed_form()?, table.remainders()?);
+    let mut sum = [0.0; 2];
+    for Corner { index, weight } in corners(table.axes(), at) {
+        sum = [0, 1].map(|k| sum[k] + weight * remainders[index][k]);
+    }
+    Some([sum[0], sum[1], form.code()])
 }
 
 /// Groups of four channels one after the other, slices within each, in the layout of a table's texels.
-fn bytes(precision: Precision, slices: &[Vec<Lookup>]) -> Result<Vec<u8>, GpuError> {
+fn bytes(precision: Precision, slices: &[Vec<[f64; 12]>]) -> Result<Vec<u8>, GpuError> {
     let mut bytes = Vec::new();
     for group in 0..ktx2::GROUPS {
-        for found in slices.iter().flatten() {
-            let m = found.lobes[0].m.map(|x| precision.round(x));
+        for entry in slices.iter().flatten() {
+            let rounded = entry.map(|x| precision.round(x));
+            let [m @ .., _, _, _] = rounded;
             if DMat3::from_row_array(m).determinant() <= 0.0 {
                 let reason = "a slice's matrix loses its sign".to_owned();
                 return Err(GpuError::TableTexels { texels: precision.name(), reason });
             }
-            let all =
-                [m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], found.magnitude, found.fresnel, 0.0];
-            all[4 * group..4 * group + 4].iter().for_each(|value| precision.put(*value, &mut bytes));
+            rounded[4 * group..4 * group + 4].iter().for_each(|value| precision.put(*value, &mut bytes));
         }
     }
     Ok(bytes)

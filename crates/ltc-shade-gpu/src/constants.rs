@@ -1,7 +1,7 @@
 //! Numbers that tables, hosts and shaders share, written as WGSL from the Rust that defines them.
 
 use ltc_core::ALPHA_MIN;
-use ltc_table::Mapping;
+use ltc_table::{ClosedForm, Mapping};
 
 use crate::LightKind;
 
@@ -46,6 +46,15 @@ pub(crate) fn constants() -> String {
     ] {
         line(name, "u32", format!("{}u", mapping_code(mapping)));
     }
+    let vector = |numbers: &[f64]| {
+        let numbers: Vec<String> = numbers.iter().map(|x| format!("{x:?}")).collect();
+        format!("vec{}f({})", numbers.len(), numbers.join(", "))
+    };
+    line("LTC_FORM_M1", "vec2f", vector(&ClosedForm::M1));
+    line("LTC_FORM_M2", "vec2f", vector(&ClosedForm::M2));
+    line("LTC_FORM_LEAST_M", "f32", format!("{:?}", ClosedForm::LEAST_M));
+    line("LTC_FORM_MAGNITUDE", "vec3f", vector(&ClosedForm::MAGNITUDE));
+    line("LTC_FORM_FRESNEL", "vec4f", vector(&ClosedForm::FRESNEL));
     text
 }
 

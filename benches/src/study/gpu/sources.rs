@@ -45,7 +45,9 @@ fn timed_texel(entry: u32, group: u32) -> vec4f {
     return select(vec4f(1.0, x, x, 0.0), select(vec4f(x, 0.0, 0.1, 0.0), vec4f(x, 0.0, -0.1, 0.0), group == 1u), group < 2u);
 }
 fn ltc_isotropic_texel(entry: u32, group: u32) -> vec4f { return timed_texel(entry, group); }
-fn ltc_anisotropic_texel(entry: u32, group: u32) -> vec4f { return timed_texel(entry, group); }
+fn ltc_anisotropic_texel(entry: u32, group: u32) -> vec4f {
+    return timed_texel(entry, group) + select(vec4f(0.0), vec4f(0.0, 0.0, 0.0, 1.0), group == 2u);
+}
 @group(1) @binding(3) var<uniform> timed_axes: LtcAxes;
 ";
 

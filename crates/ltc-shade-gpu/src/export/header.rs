@@ -73,7 +73,8 @@ fn tables(request: &ShaderRequest) -> Vec<String> {
         "Tables (`ltc export NAME --format ktx2 --precision f32`): {} groups of RGBA32F texels, m00 m01 m02 m10 |",
         ktx2::GROUPS
     )];
-    lines.push("m11 m12 m20 m21 | m22 magnitude fresnel 0, with M row-major.".to_owned());
+    lines.push("m11 m12 m20 m21 | m22 magnitude fresnel 0, with M row-major. A last number of 1 says that the two before it are what".to_owned());
+    lines.push("a closed form leaves of them; the lookup adds it (`ltc_table::ClosedForm`).".to_owned());
     let [theta, phi, alpha, lambda] =
         [Quantity::Theta, Quantity::Phi, Quantity::Alpha, Quantity::Lambda].map(Quantity::name);
     if request.has(Feature::Isotropic) {

@@ -1,4 +1,4 @@
-// The anisotropic table: coordinates. No bindings. Needs: table, fold.
+// The anisotropic table: coordinates. No bindings. Needs: table, fold, closed_form.
 //
 // Texture: 3D, x = lambda nodes, y = alpha nodes, z = phi node + phis * (theta node + thetas * group of four channels).
 
@@ -21,10 +21,6 @@ fn ltc_anisotropic_place(axes: LtcAxes, wo: vec3f, alpha_x: f32, alpha_y: f32) -
         ltc_place_of_value(axes.lambda, min(alpha_x, alpha_y) / max(alpha, LTC_TINY)),
         fold,
     );
-}
-
-fn ltc_anisotropic_decode(texels: LtcTexels, place: LtcAnisotropicPlace) -> LtcLookup {
-    return ltc_unfold(place.fold, texels);
 }
 
 fn ltc_anisotropic_nearest(place: LtcAnisotropicPlace) -> LtcAnisotropicPlace {

@@ -1,5 +1,5 @@
 // Slices of an anisotropic table, each of one pair of widths: what is left to look up is the view. Between the slice's nodes it is
-// the table's own interpolation, with a quarter of its fetches. No bindings. Needs: table, fold.
+// the table's own interpolation, with a quarter of its fetches. No bindings. Needs: table, fold, closed_form.
 //
 // Texture: 2D array, x = phi nodes, y = theta nodes, layer = slice + slices * group of four channels.
 

@@ -61,5 +61,5 @@ fn ltc_lookup_anisotropic(
     if !ltc_regular(texels) {
         texels = ltc_with_matrix(texels, ltc_fetch_nearest_anisotropic(texture, axes, place));
     }
-    return ltc_anisotropic_decode(texels, place);
+    return ltc_unfold(place.fold, texels, ltc_channels(texels, wo, alpha_x, alpha_y));
 }

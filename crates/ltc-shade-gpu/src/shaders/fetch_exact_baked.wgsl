@@ -35,5 +35,5 @@ fn ltc_lookup_baked(
         );
         texels = ltc_with_matrix(texels, nearest);
     }
-    return ltc_unfold(place.fold, texels);
+    return ltc_unfold(place.fold, texels, ltc_channels(texels, wo, alpha_x, alpha_y));
 }

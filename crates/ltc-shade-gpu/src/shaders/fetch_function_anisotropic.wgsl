@@ -51,5 +51,5 @@ fn ltc_lookup_anisotropic(axes: LtcAxes, wo: vec3f, alpha_x: f32, alpha_y: f32) 
     if !ltc_regular(texels) {
         texels = ltc_with_matrix(texels, ltc_fetch_nearest_anisotropic(axes, place));
     }
-    return ltc_anisotropic_decode(texels, place);
+    return ltc_unfold(place.fold, texels, ltc_channels(texels, wo, alpha_x, alpha_y));
 }

@@ -28,5 +28,5 @@ fn ltc_lookup_baked(axes: LtcAxes, wo: vec3f, alpha_x: f32, alpha_y: f32, slice:
         let nearest = LtcTexels(ltc_baked_texel(node, 0u), ltc_baked_texel(node, 1u), ltc_baked_texel(node, 2u));
         texels = ltc_with_matrix(texels, nearest);
     }
-    return ltc_unfold(place.fold, texels);
+    return ltc_unfold(place.fold, texels, ltc_channels(texels, wo, alpha_x, alpha_y));
 }

@@ -51,5 +51,5 @@ fn ltc_lookup_anisotropic(
         let theta = f32(ltc_nearest_node(place.theta));
         texels = ltc_with_matrix(texels, ltc_fetch_theta(texture, filtering, axes, nearest, theta));
     }
-    return ltc_anisotropic_decode(texels, place);
+    return ltc_unfold(place.fold, texels, ltc_channels(texels, wo, alpha_x, alpha_y));
 }

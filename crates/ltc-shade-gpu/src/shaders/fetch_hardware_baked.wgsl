@@ -34,5 +34,5 @@ fn ltc_lookup_baked(
             ltc_fetch_baked(texture, filtering, ltc_nearest(place.phi), ltc_nearest(place.theta), slice);
         texels = ltc_with_matrix(texels, nearest);
     }
-    return ltc_unfold(place.fold, texels);
+    return ltc_unfold(place.fold, texels, ltc_channels(texels, wo, alpha_x, alpha_y));
 }

@@ -19,7 +19,7 @@ fn ltc_folded_azimuth(fold: LtcFold, wo: vec3f) -> f32 {
 }
 
 // Back from the folded quadrant: S M S^T for the signed permutation S, which keeps det M > 0.
-fn ltc_unfold(fold: LtcFold, texels: LtcTexels) -> LtcLookup {
+fn ltc_unfold(fold: LtcFold, texels: LtcTexels, channels: vec2f) -> LtcLookup {
     let m = ltc_matrix(texels);
     let exchanged = mat3x3f(m[1].yxz, m[0].yxz, m[2].yxz);
     let s = vec3f(fold.mirror, 1.0);
@@ -28,5 +28,5 @@ fn ltc_unfold(fold: LtcFold, texels: LtcTexels) -> LtcLookup {
         select(m[1], exchanged[1], fold.swap) * s * s.y,
         select(m[2], exchanged[2], fold.swap) * s,
     );
-    return LtcLookup(unfolded, texels.g2.y, texels.g2.z);
+    return LtcLookup(unfolded, channels.x, channels.y);
 }

@@ -26,7 +26,8 @@ struct LtcPlace {
 }
 
 // The three texels of an entry, or of an interpolation between entries:
-// m00 m01 m02 m10, m11 m12 m20 m21, m22 magnitude fresnel 0.
+// m00 m01 m02 m10, m11 m12 m20 m21, m22 magnitude fresnel 0; in a table with a closed form the third is m22, what the form leaves of both,
+// and 1.
 struct LtcTexels {
     g0: vec4f,
     g1: vec4f,

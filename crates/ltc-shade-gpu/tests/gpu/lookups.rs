@@ -6,7 +6,7 @@ use ltc_core::Alpha;
 use ltc_shade_gpu::{
     BakedLookups, BakedQuery, BakedSlices, Filtering, Gpu, GpuError, LookupResult, Lookups, TableTextures,
 };
-use ltc_table::{Axis, Mapping, Quantity, Query, Table};
+use ltc_table::{Axis, ClosedForm, Mapping, Quantity, Query, Table};
 
 use crate::support::{gpu, random};
 use crate::tables;
@@ -74,6 +74,10 @@ fn cropped() -> Table {
     tables::table(axes, |nodes| [nodes[0].1, nodes[1].1, nodes[2].1, nodes[3].1])
 }
 
+fn with_closed_form(table: Table) -> Table {
+    table.with_closed_form(Some(ClosedForm::GgxSmith)).unwrap()
+}
+
 fn all_tables() -> Vec<(&'static str, Table)> {
     vec![
         ("linear", tables::anisotropic(Mapping::Linear, Mapping::Linear)),
@@ -81,6 +85,7 @@ fn all_tables() -> Vec<(&'static str, Table)> {
         ("half tangent", tables::anisotropic(Mapping::HalfTangent, Mapping::Sqrt)),
         ("grazing half tangent", tables::anisotropic(Mapping::GrazingHalfTangent, Mapping::Sqrt)),
         ("cropped", cropped()),
+        ("closed form", with_closed_form(tables::anisotropic(Mapping::HalfTangent, Mapping::Sqrt))),
     ]
 }
 
@@ -130,6 +135,15 @@ fn a_wrong_fold_is_seen() {
     for (mistake, result) in mistakes.iter().zip(results) {
         assert!(largest_error(&table, &[*mistake], &[result]) > 1e3 * TOLERANCE, "{mistake:?}");
     }
+}
+
+#[test]
+fn a_closed_form_that_is_left_out_is_seen() {
+    let Some(gpu) = gpu(Filtering::Exact) else { return };
+    let queries = anisotropic_queries(1000);
+    let plain = tables::anisotropic(Mapping::Linear, Mapping::Sqrt);
+    let results = on_gpu(&gpu, &plain, &queries);
+    assert!(largest_error(&with_closed_form(plain), &queries, &results) > 1e3 * TOLERANCE);
 }
 
 #[test]
