@@ -8,11 +8,12 @@ use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip};
 use super::{Interval, Plan, Record, StudyError};
 
 /// The scenes: their names and files.
-const SCENES: [(&str, &str); 4] = [
+const SCENES: [(&str, &str); 5] = [
     ("sphere-grid", include_str!("../../scenes/sphere-grid.json")),
     ("grazing-floor", include_str!("../../scenes/grazing-floor.json")),
     ("many-lights", include_str!("../../scenes/many-lights.json")),
     ("thin-lights", include_str!("../../scenes/thin-lights.json")),
+    ("textured-light", include_str!("../../scenes/textured-light.json")),
 ];
 
 /// The sampling of the reference takes so many samples at a time: one for each of its techniques.
