@@ -37,7 +37,7 @@ impl Loops {
         (0..count.max(1)).map(Loop::start).collect::<io::Result<_>>().map(Self)
     }
 
-    /// A place where there are fewest; `None` never, as there is at least one loop.
+    /// A place where there are fewest. There always is one.
     pub(crate) fn place(&self) -> Option<Place> {
         let free = self.0.iter().min_by_key(|one| Arc::strong_count(&one.open))?;
         Some(Place { handle: free.handle.clone(), _open: Arc::clone(&free.open) })

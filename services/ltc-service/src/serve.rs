@@ -194,14 +194,15 @@ impl Connections {
         while self.tasks.try_join_next().is_some() {}
         // Answers are written whole: waiting to fill packets only delays them. Not all systems can, none must.
         let _ = stream.set_nodelay(true);
-        // The loop that it is given to watches it from now on.
-        let (Some(place), Ok(stream)) = (self.loops.place(), stream.into_std()) else { return };
+        let Some(place) = self.loops.place() else { return };
+        // The loop that it is put on watches it from now on.
+        let stream = stream.into_std();
         let clerk = Clerk { gate: self.gate.clone(), peer: peer.ip(), runtime: Handle::current() };
         let (mut protocol, watcher) = (self.protocol.clone(), self.graceful.watcher());
         let handle = place.handle.clone();
         let connection = async move {
             let _held = (permit, place);
-            let stream = TcpStream::from_std(stream)?;
+            let stream = TcpStream::from_std(stream?)?;
             let connection = protocol.timer(Patience::new()).serve_connection(TokioIo::new(stream), clerk);
             watcher.watch(connection).await.map_err(io::Error::other)
         };
