@@ -32,8 +32,14 @@ pub(crate) struct Place {
 }
 
 impl Loops {
+    /// One for every two threads of the runtime that does the rest. More would only sleep and be woken more often: one alone gives more
+    /// than a hundred thousand answers a second from memory (`tests/load/README.md`).
+    pub(crate) fn beside(runtime: &Handle) -> io::Result<Self> {
+        Self::start(runtime.metrics().num_workers() / 2)
+    }
+
     /// As many as that, and at least one.
-    pub(crate) fn start(count: usize) -> io::Result<Self> {
+    fn start(count: usize) -> io::Result<Self> {
         (0..count.max(1)).map(Loop::start).collect::<io::Result<_>>().map(Self)
     }
 

@@ -89,7 +89,7 @@ pub async fn serve_until(
     let failed = |cause| ServeError::Listen { address: listen.clone(), cause };
     let listener = TcpListener::bind(listen).await.map_err(failed)?;
     let address = listener.local_addr().map_err(failed)?;
-    let loops = Loops::start(Handle::current().metrics().num_workers()).map_err(ServeError::Threads)?;
+    let loops = Loops::beside(&Handle::current()).map_err(ServeError::Threads)?;
     let mut connections = Connections::new(state.limits(), gate(state.clone()), loops);
     warn_without_tokens(&state).await;
     tracing::info!(%address, "listening");
