@@ -51,7 +51,7 @@ impl Answers {
     }
 
     /// The answer to a request that was answered before.
-    pub(crate) fn find(&self, request: &Request<Body>, revision: u64) -> Option<(Response, RouteLabel)> {
+    pub(crate) fn find<B>(&self, request: &Request<B>, revision: u64) -> Option<(Response, RouteLabel)> {
         let headers = request.headers();
         if !is_plain(request.method(), headers) {
             return None;

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use axum::Router;
 use axum::extract::{Request, State};
-use axum::http::{HeaderMap, Method};
+use axum::http::{self, HeaderMap, Method};
 use axum::response::{IntoResponse, Response};
 use tower::ServiceExt;
 
@@ -44,40 +44,38 @@ impl Gate {
     /// Answers a request from that address, whatever happens.
     pub(crate) async fn answer(&self, request: Request, peer: Option<IpAddr>) -> Response {
         let start = Instant::now();
-        let id = RequestId::of(request.headers());
-        if let Some((response, route)) = self.answer_again(&request, peer) {
-            return self.finish_again(response, route, id, &request, start);
+        match self.answer_again(&request, peer, start) {
+            Some(response) => response,
+            None => self.answer_anew(request, peer, start).await,
         }
-        let line = Line { method: request.method().clone(), path: request.uri().path().to_owned(), start };
-        let (response, route) = if headers::is_preflight(&request) {
-            (headers::answer_preflight(), RouteLabel(0))
-        } else {
-            self.admit(request, peer).await
-        };
-        self.finish(response, route, &id, &line)
     }
 
     /// The short way of what is asked for all day: an answer that was given before, to somebody without a token, where none is
-    /// needed. Nothing is built but the list of its headers.
-    fn answer_again(&self, request: &Request, peer: Option<IpAddr>) -> Option<(Response, RouteLabel)> {
+    /// needed. Nothing is waited for, and nothing is built but the list of its headers.
+    pub(crate) fn answer_again<B>(
+        &self,
+        request: &http::Request<B>,
+        peer: Option<IpAddr>,
+        start: Instant,
+    ) -> Option<Response> {
         if self.state.settings().read != Access::Open || is_presented(request.headers()) {
             return None;
         }
-        let known = self.state.answers().find(request, self.state.revision())?;
+        let (response, route) = self.state.answers().find(request, self.state.revision())?;
         // A client that asks too often is counted, and told so, on the long way.
         self.state.rates().read(|| Client::of_address(peer)).ok()?;
-        Some(known)
+        Some(self.finish_again(response, route, request, start))
     }
 
     /// What is left to do for such an answer.
-    fn finish_again(
+    fn finish_again<B>(
         &self,
         mut response: Response,
         route: RouteLabel,
-        id: RequestId,
-        request: &Request,
+        request: &http::Request<B>,
         start: Instant,
     ) -> Response {
+        let id = RequestId::of(request.headers());
         self.state.metrics().answer_hits.add(1);
         let (status, time) = (response.status().as_u16(), start.elapsed());
         self.state.metrics().answered(route, status, time);
@@ -88,6 +86,23 @@ impl Gate {
         }
         response.headers_mut().insert(X_REQUEST_ID, id.into_header());
         response
+    }
+
+    /// The long way of everything else.
+    pub(crate) async fn answer_anew(
+        &self,
+        request: Request,
+        peer: Option<IpAddr>,
+        start: Instant,
+    ) -> Response {
+        let id = RequestId::of(request.headers());
+        let line = Line { method: request.method().clone(), path: request.uri().path().to_owned(), start };
+        let (response, route) = if headers::is_preflight(&request) {
+            (headers::answer_preflight(), RouteLabel(0))
+        } else {
+            self.admit(request, peer).await
+        };
+        self.finish(response, route, &id, &line)
     }
 
     async fn admit(&self, mut request: Request, peer: Option<IpAddr>) -> (Response, RouteLabel) {

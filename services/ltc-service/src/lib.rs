@@ -40,6 +40,7 @@ mod headers;
 mod history;
 mod index;
 mod json_table;
+mod loops;
 mod memory;
 mod metrics;
 mod openapi;

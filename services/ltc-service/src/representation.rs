@@ -14,6 +14,7 @@ use crate::ApiError;
 use crate::etag::ETag;
 use crate::preconditions::{Preconditions, Wanted};
 use crate::range::Part;
+use crate::request_id::X_REQUEST_ID;
 
 /// How long an answer may be kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,11 +97,15 @@ pub(crate) struct Rendered {
 }
 
 impl Rendered {
-    /// With the headers that every answer has, so that nothing but the request's id is added to them later.
+    /// With the headers that every answer has, so that nothing but the request's id is put into them later.
     fn new(mut headers: HeaderMap, content: Tagged, immutable: bool) -> Self {
         let mut headers_of_news = headers.clone();
         crate::headers::add(&mut headers_of_news, StatusCode::NOT_MODIFIED);
         crate::headers::add(&mut headers, StatusCode::OK);
+        // A copy has no room for more: the request's id takes the place of this one.
+        for headers in [&mut headers, &mut headers_of_news] {
+            headers.insert(X_REQUEST_ID, HeaderValue::from_static(""));
+        }
         Self { headers_of_news, headers, content, immutable }
     }
 

@@ -1,24 +1,30 @@
 //! An address, connections, and an end.
 
-use std::convert::Infallible;
+use std::future::{Ready, ready};
 use std::io;
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
+use std::pin::Pin;
 use std::sync::Arc;
-use std::time::Duration;
+use std::task::{Context, Poll};
+use std::time::{Duration, Instant};
 
 use axum::body::Body;
 use axum::http::Request;
+use axum::response::Response;
+use futures_util::future::{Either, FutureExt, TryFutureExt};
 use hyper::body::{Body as _, Incoming};
 use hyper::server::conn::http1;
-use hyper::service::service_fn;
+use hyper::service::Service;
 use hyper_util::rt::TokioIo;
 use hyper_util::server::graceful::GracefulShutdown;
 use tokio::net::{TcpListener, TcpStream};
+use tokio::runtime::Handle;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
-use tokio::task::JoinSet;
+use tokio::task::{JoinError, JoinHandle, JoinSet};
 
 use crate::AppState;
 use crate::gate::Gate;
+use crate::loops::Loops;
 use crate::patience::Patience;
 use crate::router::gate;
 use crate::settings::Limits;
@@ -36,6 +42,9 @@ pub enum ServeError {
         /// Why.
         cause: io::Error,
     },
+    /// The system has no more threads or descriptors for the connections.
+    #[error("cannot start the threads of the connections: {0}")]
+    Threads(io::Error),
     /// Signals cannot be listened to, so the service could not be stopped gracefully.
     #[error("cannot listen to signals: {0}")]
     Signals(io::Error),
@@ -80,7 +89,8 @@ pub async fn serve_until(
     let failed = |cause| ServeError::Listen { address: listen.clone(), cause };
     let listener = TcpListener::bind(listen).await.map_err(failed)?;
     let address = listener.local_addr().map_err(failed)?;
-    let mut connections = Connections::new(state.limits(), gate(state.clone()));
+    let loops = Loops::beside(&Handle::current()).map_err(ServeError::Threads)?;
+    let mut connections = Connections::new(state.limits(), gate(state.clone()), loops);
     warn_without_tokens(&state).await;
     tracing::info!(%address, "listening");
     on_ready(address);
@@ -150,6 +160,7 @@ async fn accept(listener: &TcpListener) -> (TcpStream, SocketAddr) {
 /// The open connections.
 struct Connections {
     gate: Gate,
+    loops: Loops,
     protocol: http1::Builder,
     graceful: GracefulShutdown,
     tasks: JoinSet<()>,
@@ -160,7 +171,7 @@ impl Connections {
     /// Larger request heads are answered with 431 by the protocol.
     const HEAD_BYTES: usize = 64 << 10;
 
-    fn new(limits: &Limits, gate: Gate) -> Self {
+    fn new(limits: &Limits, gate: Gate, loops: Loops) -> Self {
         let mut protocol = http1::Builder::new();
         // No `pipeline_flush`: it holds back the answer to what is no HTTP for as long as bytes of that are unread, which is for ever.
         protocol
@@ -168,7 +179,7 @@ impl Connections {
             .max_header_size(Self::HEAD_BYTES)
             .max_buf_size(Self::HEAD_BYTES);
         let permits = Arc::new(Semaphore::new(limits.connections));
-        Self { gate, protocol, graceful: GracefulShutdown::new(), tasks: JoinSet::new(), permits }
+        Self { gate, loops, protocol, graceful: GracefulShutdown::new(), tasks: JoinSet::new(), permits }
     }
 
     /// The next connection, once there is room for one.
@@ -183,25 +194,25 @@ impl Connections {
         while self.tasks.try_join_next().is_some() {}
         // Answers are written whole: waiting to fill packets only delays them. Not all systems can, none must.
         let _ = stream.set_nodelay(true);
-        let gate = self.gate.clone();
-        let service = service_fn(move |request: Request<Incoming>| {
-            let gate = gate.clone();
-            async move { Ok::<_, Infallible>(gate.answer(with_body(request), Some(peer.ip())).await) }
-        });
-        let mut protocol = self.protocol.clone();
-        let connection = protocol.timer(Patience::new()).serve_connection(TokioIo::new(stream), service);
-        let connection = self.graceful.watch(connection);
-        self.tasks.spawn(async move {
-            let _permit = permit;
-            if let Err(error) = connection.await {
-                tracing::debug!(%error, "connection ended");
-            }
-        });
+        let Some(place) = self.loops.place() else { return };
+        // The loop that it is put on watches it from now on.
+        let stream = stream.into_std();
+        let clerk = Clerk { gate: self.gate.clone(), peer: peer.ip(), runtime: Handle::current() };
+        let (mut protocol, watcher) = (self.protocol.clone(), self.graceful.watcher());
+        let handle = place.handle.clone();
+        let connection = async move {
+            let _held = (permit, place);
+            let stream = TcpStream::from_std(stream?)?;
+            let connection = protocol.timer(Patience::new()).serve_connection(TokioIo::new(stream), clerk);
+            watcher.watch(connection).await.map_err(io::Error::other)
+        };
+        let connection = connection.inspect_err(|error| tracing::debug!(%error, "connection ended"));
+        self.tasks.spawn_on(connection.map(drop), &handle);
     }
 
     /// Closes idle connections, waits for the others, and drops those that take too long.
     async fn drain(self, time: Duration, mut stop: watch::Receiver<Stop>) {
-        let Self { graceful, mut tasks, .. } = self;
+        let Self { graceful, mut tasks, loops: _loops, .. } = self;
         tracing::info!(connections = graceful.count(), "stopping");
         let done = tokio::select! {
             () = graceful.shutdown() => true,
@@ -214,6 +225,47 @@ impl Connections {
             tracing::warn!(connections = tasks.len(), "stopped with requests unfinished");
         }
         tasks.shutdown().await;
+    }
+}
+
+/// Answers the requests of one connection.
+struct Clerk {
+    gate: Gate,
+    peer: IpAddr,
+    /// Where what cannot be answered at once is worked on.
+    runtime: Handle,
+}
+
+impl Service<Request<Incoming>> for Clerk {
+    type Response = Response;
+    type Error = JoinError;
+    type Future = Either<Ready<Result<Response, JoinError>>, Coming>;
+
+    fn call(&self, request: Request<Incoming>) -> Self::Future {
+        let (start, peer) = (Instant::now(), Some(self.peer));
+        if let Some(response) = self.gate.answer_again(&request, peer, start) {
+            return Either::Left(ready(Ok(response)));
+        }
+        let gate = self.gate.clone();
+        let answer = async move { gate.answer_anew(with_body(request), peer, start).await };
+        Either::Right(Coming(self.runtime.spawn(answer)))
+    }
+}
+
+/// An answer that is worked on, for as long as somebody waits for it.
+struct Coming(JoinHandle<Response>);
+
+impl Future for Coming {
+    type Output = Result<Response, JoinError>;
+
+    fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Self::Output> {
+        Pin::new(&mut self.0).poll(context)
+    }
+}
+
+impl Drop for Coming {
+    fn drop(&mut self) {
+        self.0.abort();
     }
 }
 

@@ -1,6 +1,7 @@
 //! The service's contract, asked through its router and over real connections.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod again;
 mod aliases;
 mod auth;
 mod benchmarks;

@@ -1,11 +1,12 @@
 //! Over real connections: what the router alone cannot show.
 
 use std::net::SocketAddr;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use ltc_service::settings::Refits;
 use ltc_service::{Limits, ServeError, Settings, Stop, serve_until};
-use ltc_store::{Jobs, NewJob};
+use ltc_store::{Jobs, MemoryStore, NewJob};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::sync::{oneshot, watch};
@@ -13,28 +14,34 @@ use tokio::task::JoinHandle;
 
 use crate::support::*;
 
-struct Server {
+pub struct Server {
     address: SocketAddr,
     stop: watch::Sender<Stop>,
     task: JoinHandle<Result<(), ServeError>>,
 }
 
 impl Server {
-    async fn start(config: Settings) -> Self {
+    pub async fn start(config: Settings) -> Self {
+        Self::over(config).await.0
+    }
+
+    /// The same, and its store.
+    pub async fn over(config: Settings) -> (Self, Arc<MemoryStore>) {
         let (stop, stopped) = watch::channel(Stop::No);
         let (ready, address) = oneshot::channel();
         let config = Settings { listen: "127.0.0.1:0".to_owned(), ..config };
         let on_ready = move |address| ready.send(address).unwrap();
-        let task = tokio::spawn(serve_until(state_over(&catalogue(), config).await.0, on_ready, stopped));
-        Self { address: address.await.unwrap(), stop, task }
+        let (state, store) = state_over(&catalogue(), config).await;
+        let task = tokio::spawn(serve_until(state, on_ready, stopped));
+        (Self { address: address.await.unwrap(), stop, task }, store)
     }
 
-    async fn connect(&self) -> TcpStream {
+    pub async fn connect(&self) -> TcpStream {
         TcpStream::connect(self.address).await.unwrap()
     }
 
     /// What comes back for these bytes until the server closes.
-    async fn exchange(&self, request: &[u8]) -> Vec<u8> {
+    pub async fn exchange(&self, request: &[u8]) -> Vec<u8> {
         let mut stream = self.connect().await;
         stream.write_all(request).await.unwrap();
         rest(&mut stream).await
