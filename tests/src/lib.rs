@@ -16,7 +16,7 @@ pub mod tolerance;
 
 pub use back_end::{BackEnd, CpuF32, CpuF64, Gpu, Path};
 pub use job::Job;
-pub use lean::{LeanQuads, lean_quads};
+pub use lean::{LeanLights, lean_lights};
 pub use lights::{
     LightBackEnd, LightsF32, LightsF64, LightsOnGpu, condition, light_back_ends, light_jobs, matrix,
 };

@@ -8,7 +8,7 @@ use ltc_core::points::SplitMix64;
 use ltc_fit::draw;
 use ltc_shade_gpu::{LightJob, LightKind, LightShape};
 use ltc_tests::{
-    LightBackEnd, LightsF64, condition, lean_quads, light_back_ends, light_jobs, lit_share, matrix, shapes,
+    LightBackEnd, LightsF64, condition, lean_lights, light_back_ends, light_jobs, lit_share, matrix, shapes,
     table, tolerance, wide,
 };
 
@@ -72,22 +72,58 @@ fn random_triples_agree_on_all_back_ends() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// The same bound for the quads that leave out care for what is rare.
+/// The same bound for the lights that leave out care for what is rare.
 #[test]
-fn lean_quads_agree_in_absolute_terms() {
-    let jobs = triples(LightKind::Quad);
-    let truth = LightsF64.fractions(&jobs).unwrap();
-    for back_end in lean_quads() {
-        let values = back_end.fractions(&jobs).unwrap();
-        let absolute = values.iter().zip(&truth).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let (excess, at) = largest_excess(&jobs, &values, &truth);
-        println!("{}: up to {absolute:.1e}, {excess:.2} of what is allowed", back_end.name());
-        assert!(excess <= 1.0, "{} for {}: {:?}", values[at], truth[at], jobs[at]);
-        // The control: the same light under its neighbour's lobe.
-        let others: Vec<_> =
-            jobs.iter().zip(&jobs[1..]).map(|(a, b)| LightJob { m: b.m, ..a.clone() }).collect();
-        let values = back_end.fractions(&others).unwrap();
-        assert!(largest_excess(&others, &values, &truth).0 > 100.0);
+fn lean_lights_agree_in_absolute_terms() {
+    for kind in [LightKind::Quad, LightKind::Line, LightKind::Strip] {
+        let jobs = triples(kind);
+        let truth = LightsF64.fractions(&jobs).unwrap();
+        for back_end in lean_lights() {
+            let values = back_end.fractions(&jobs).unwrap();
+            let absolute = values.iter().zip(&truth).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let (excess, at) = largest_excess(&jobs, &values, &truth);
+            println!("{kind}, {}: up to {absolute:.1e}, {excess:.2} of what is allowed", back_end.name());
+            assert!(excess <= 1.0, "{} for {}: {:?}", values[at], truth[at], jobs[at]);
+            // The control: the same light under its neighbour's lobe.
+            let others: Vec<_> =
+                jobs.iter().zip(&jobs[1..]).map(|(a, b)| LightJob { m: b.m, ..a.clone() }).collect();
+            let values = back_end.fractions(&others).unwrap();
+            assert!(largest_excess(&others, &values, &truth).0 > 100.0);
+        }
+    }
+}
+
+/// Lines that have no extent, lie along the view, go through the shading point, or lie below the surface.
+#[test]
+fn lean_lines_stay_in_range() {
+    let job = |[p0, p1]: [DVec3; 2]| LightJob {
+        m: [0.4, 0.0, 0.3, 0.1, 0.3, 0.2, 0.0, -0.1, 0.9],
+        light: LightShape::Line { p0: p0.as_vec3(), p1: p1.as_vec3(), radius: 0.1, caps: false },
+    };
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let degenerate: Vec<_> = [
+        [z, z],
+        [DVec3::ZERO; 2],
+        [z, 2.0 * z],
+        [z, -z],
+        [x + z, -x - z],
+        [x, -x],
+        [x, y],
+        [DVec3::ZERO, z],
+        [z * 1e-30, x],
+        [(x + z) * 1e6, (y + z) * 1e6],
+        [(x + z) * 1e-6, (y + z) * 1e-6],
+        [z + x * 1e-7, z - x * 1e-7],
+        [x - y, z * 1e-20 - x],
+    ]
+    .into_iter()
+    .map(job)
+    .collect();
+    let below = job([x - z, y - z]);
+    for back_end in lean_lights() {
+        let values = back_end.fractions(&degenerate).unwrap();
+        assert!(values.iter().all(|value| (0.0..=1.0).contains(value)), "{values:?}");
+        assert_eq!(back_end.fractions(std::slice::from_ref(&below)).unwrap(), [0.0], "it leaks");
     }
 }
 
@@ -117,7 +153,7 @@ fn lean_quads_say_how_tiny_a_light_may_be_and_stay_in_range() {
             })
             .collect();
         let truth = LightsF64.fractions(&of_size).unwrap();
-        for back_end in lean_quads() {
+        for back_end in lean_lights() {
             let values = back_end.fractions(&of_size).unwrap();
             let largest = truth.iter().copied().fold(0.0, f64::max);
             let mut worst = [0.0_f64; 2];
@@ -154,7 +190,7 @@ fn lean_quads_say_how_tiny_a_light_may_be_and_stay_in_range() {
     .map(job)
     .collect();
     let below = job([x - z, y - z, -x - z, -y - z]);
-    for back_end in lean_quads() {
+    for back_end in lean_lights() {
         // Whatever is not finite is an error of the device's.
         let values = back_end.fractions(&degenerate).unwrap();
         assert!(values.iter().all(|value| (0.0..=1.0).contains(value)), "{values:?}");

@@ -206,7 +206,7 @@ fn resolve<'a>(name: &'a str, symbols: &[&str]) -> &'a str {
     match name {
         "edge" if symbols.contains(&"rational_edges") => "edge_rational",
         "edge" => "edge_exact",
-        "quad" if symbols.contains(&"lean_quads") => "quad_lean",
+        "quad" if symbols.contains(&"lean_lights") => "quad_lean",
         "quad" => "quad_careful",
         other => other,
     }

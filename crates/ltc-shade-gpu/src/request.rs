@@ -91,9 +91,10 @@ pub enum Feature {
     TwoSided,
     /// Angles of edges by a rational function instead of an arc tangent.
     RationalEdges,
-    /// Quads by one short loop: cut by the same horizons and as exact in absolute terms, for convex ones. Tiny lights keep fewer digits,
-    /// and a shading point in the light's plane is given what one of its sides sees, or nothing.
-    LeanQuads,
+    /// Quads, lines and strips in straight code alone, without branches for what is rare: cut by the same horizons and as exact in
+    /// absolute terms, quads for convex ones. Tiny quads and lines seen along themselves keep fewer digits, and a shading point in a
+    /// quad's plane is given what one of its sides sees, or nothing.
+    LeanLights,
     /// The colour of textured quads and polygons, out of one texture that holds all of theirs ([`crate::TextureAtlas`]).
     Textured,
     /// Schlick's Fresnel term from F0 and F90 and a table's two channels.
@@ -116,7 +117,7 @@ impl Feature {
         Self::CosineHorizon,
         Self::TwoSided,
         Self::RationalEdges,
-        Self::LeanQuads,
+        Self::LeanLights,
         Self::Textured,
         Self::Fresnel,
         Self::Material,
@@ -138,7 +139,7 @@ impl Feature {
             Self::CosineHorizon => "cosine-horizon",
             Self::TwoSided => "two-sided",
             Self::RationalEdges => "rational-edges",
-            Self::LeanQuads => "lean-quads",
+            Self::LeanLights => "lean-lights",
             Self::Textured => "textured",
             Self::Fresnel => "fresnel",
             Self::Material => "material",
@@ -160,7 +161,7 @@ impl Feature {
             Self::CosineHorizon => "cuts lights at the horizon of cosine space",
             Self::TwoSided => "flat lights take a parameter that says whether their back emits",
             Self::RationalEdges => "angles of edges by a rational function instead of an arc tangent",
-            Self::LeanQuads => {
+            Self::LeanLights => {
                 "convex quads by one short loop: as exact in absolute terms, fewer digits of tiny ones"
             }
             Self::Textured => "the colour of textured quads and polygons, from one texture for all",
@@ -305,7 +306,7 @@ impl ShaderRequest {
             (Feature::CosineHorizon, "cosine_horizon"),
             (Feature::TwoSided, "two_sided"),
             (Feature::RationalEdges, "rational_edges"),
-            (Feature::LeanQuads, "lean_quads"),
+            (Feature::LeanLights, "lean_lights"),
         ]
         .into_iter()
         .filter_map(|(feature, symbol)| self.has(feature).then_some(symbol))
@@ -333,7 +334,8 @@ impl ShaderRequest {
         }
         for choice in 0..1 << switches.len() {
             let chosen = (0..switches.len()).filter(|i| choice & (1 << i) != 0).map(|i| switches[i]);
-            list.push(Self::new([LightKind::Quad], chosen.chain([Feature::LeanQuads])));
+            let lights = [LightKind::Quad, LightKind::LineWithCaps, LightKind::Strip];
+            list.push(Self::new(lights, chosen.chain([Feature::LeanLights])));
         }
         for tables in
             [&[Feature::Isotropic][..], &[Feature::Anisotropic], &[Feature::Baked], &Feature::LOOKUPS]

@@ -303,8 +303,9 @@ impl<'a> Forms<'a> {
             &[],
             LEAKS,
         )?;
-        let lean = Integrate::Shipped(quad, &["surface_horizon", "cosine_horizon", "lean_quads"]);
-        self.light("quad/lean", compute, ours, lean, on(quad), &[], EXACT)?;
+        let lean = |kind| Integrate::Shipped(kind, &["surface_horizon", "cosine_horizon", "lean_lights"]);
+        self.light("quad/lean", compute, ours, lean(quad), on(quad), &[], EXACT)?;
+        self.light("line/lean", compute, ours, lean(line), on(line), &[], EXACT)?;
         let alone = Integrate::Shipped(quad, &["cosine_horizon"]);
         self.light("quad/cosine_horizon_alone", compute, ours, alone, on(quad), &[], LEAKS)?;
         let [_, sphere, filter] = self.published.isotropic_textures(self.bench.gpu)?;
@@ -334,7 +335,7 @@ impl<'a> Forms<'a> {
         self.light(name, compute, published, Integrate::PublishedQuad, sunk.clone(), &[], LEAKS)?;
         self.light("quad/half_below_the_surface", compute, ours, shipped(quad), sunk, &[], EXACT)?;
         let name = "quad/lean_half_below_the_surface";
-        self.light(name, compute, ours, lean, placed(quad, most, true), &[], EXACT)?;
+        self.light(name, compute, ours, lean(quad), placed(quad, most, true), &[], EXACT)?;
         let records = records(&on(quad).0);
         let bytes: Vec<u8> = records.iter().flat_map(|word| word.to_le_bytes()).collect();
         let gpu = self.bench.gpu;

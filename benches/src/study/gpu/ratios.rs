@@ -24,15 +24,15 @@ const RATIOS: &[Asked] = &[
     ),
     ("line_over_quad", "compute/integral/line/exact", "compute/integral/quad/exact", Some(0.5)),
     ("quad_over_published", "compute/integral/quad/exact", "compute/integral/quad/published_2016", Some(1.0)),
+    ("lean_line_over_lean_quad", "compute/integral/line/lean", "compute/integral/quad/lean", Some(0.5)),
     (
         "lean_quad_over_published",
         "compute/integral/quad/lean",
         "compute/integral/quad/published_2016",
         Some(1.0),
     ),
-    // What explains them. A software driver does not jump over branches that no pixel takes: the lean quad is what is left of the
-    // careful one on hardware where neighbours go the same way.
-    ("line_over_lean_quad", "compute/integral/line/exact", "compute/integral/quad/lean", None),
+    // What explains them. A software driver does not jump over branches that no pixel takes: lean lights are what is left of the
+    // careful ones on hardware where neighbours go the same way.
     (
         "anisotropic_over_isotropic_lookup_f16",
         "compute/lookup/anisotropic/texture_f16",
@@ -111,6 +111,7 @@ const RATIOS: &[Asked] = &[
         "compute/lookup/anisotropic/buffer_f32",
         None,
     ),
+    ("lean_line_over_published", "compute/integral/line/lean", "compute/integral/line/published_2017", None),
     ("line_over_published", "compute/integral/line/exact", "compute/integral/line/published_2017", None),
     (
         "quad_of_one_horizon_over_published",

@@ -1,5 +1,8 @@
 // A straight segment seen from the shading point, and the integral along it that all thin lights share (Heitz and Hill 2017,
 // eq. 1.20 to 1.26, in a form that cancels nowhere). No bindings. Needs: math, precise, lobe.
+//
+// Straight code but for what is rare. Of lean lights that is left out: a segment seen from nearly along itself, or cut by a horizon next to
+// the shading point, keeps fewer digits.
 
 struct LtcSegment {
     // Over a power of two near the farther end's distance.
@@ -15,7 +18,9 @@ struct LtcSegment {
     valid: bool,
 }
 
+//#ifnot lean_lights
 const LTC_SMALL_SQUARE: f32 = 1e-24;
+//#endif
 
 fn ltc_segment(p0: vec3f, p1: vec3f) -> LtcSegment {
     let scale = ltc_floor_power_of_two(max(ltc_largest_component(p0), ltc_largest_component(p1)));
@@ -25,6 +30,10 @@ fn ltc_segment(p0: vec3f, p1: vec3f) -> LtcSegment {
     let shrink = 1.0 / scale;
     let a = p0 * shrink;
     let b = p1 * shrink;
+//#if lean_lights
+    let product = cross(a, b - a);
+    return LtcSegment(a, b, product, 1.0, shrink, dot(product, product) > 0.0);
+//#else
     // Two degrees apart, the plain product loses nothing that matters.
     let plain = cross(a, b);
     if dot(plain, plain) > 1e-3 * dot(a, a) * dot(b, b) && dot(plain, plain) >= LTC_SMALL_SQUARE {
@@ -36,6 +45,7 @@ fn ltc_segment(p0: vec3f, p1: vec3f) -> LtcSegment {
     }
     let unit = ltc_unit_or_zero(product);
     return LtcSegment(a, b, unit, dot(product, unit), shrink, dot(unit, unit) > 0.5);
+//#endif
 }
 
 // Unit vector from the shading point towards the nearest point of the line.
@@ -53,30 +63,30 @@ struct LtcKept {
 // Moves the end that lies below z = 0, if any, onto it. The moment p0 x p1 says where: the point is
 // (z x moment) / (z1 - z0), which cancels nowhere.
 fn ltc_clip_above(p0: vec3f, p1: vec3f, moment: vec3f) -> LtcKept {
-    if p0.z <= 0.0 && p1.z <= 0.0 {
-        return LtcKept(p0, p1, 0.0);
-    }
-    if p0.z >= 0.0 && p1.z >= 0.0 {
-        return LtcKept(p0, p1, 1.0);
-    }
-    let inverse_rise = 1.0 / (p1.z - p0.z);
+    let sunk = vec2f(p0.z, p1.z) < vec2f(0.0);
+    let crosses = sunk.x != sunk.y;
+    let inverse_rise = 1.0 / select(1.0, p1.z - p0.z, crosses);
     let crossing = vec3f(-moment.y * inverse_rise, moment.x * inverse_rise, 0.0);
-    if p0.z < 0.0 {
-        return LtcKept(crossing, p1, p1.z * inverse_rise);
-    }
-    return LtcKept(p0, crossing, -p0.z * inverse_rise);
+    let kept = select(-p0.z, p1.z, sunk.x) * inverse_rise;
+    let share = select(select(1.0, kept, crosses), 0.0, max(p0.z, p1.z) <= 0.0);
+    return LtcKept(select(p0, crossing, sunk.x & crosses), select(p1, crossing, sunk.y & crosses), share);
 }
 
+//#ifnot lean_lights
 // A length whose square may underflow.
 fn ltc_length(v: vec3f) -> f32 {
     let scale = ltc_largest_component(v);
     return select(0.0, scale * length(v / max(scale, LTC_TINY)), scale > LTC_TINY);
 }
+//#endif
 
 // (c_z / d) (angle - sin angle) + tan(angle / 2) (q0_z / |q0| + q1_z / |q1|) (1 / |q0| + 1 / |q1|), the angle being that
 // between q0 and q1, sine = |q0 x q1|, nearness = c_z / d with d the distance of the line, c towards its nearest point.
 fn ltc_cosine_along(q0: vec3f, q1: vec3f, sine: f32, nearness: f32) -> f32 {
     let squares = vec2f(dot(q0, q0), dot(q1, q1));
+//#if lean_lights
+    let near = inverseSqrt(max(squares, vec2f(1e-36)));
+//#else
     var near = inverseSqrt(squares);
     if !(min(squares.x, squares.y) > 1e-30) {
         let r0 = ltc_length(q0);
@@ -86,9 +96,7 @@ fn ltc_cosine_along(q0: vec3f, q1: vec3f, sine: f32, nearness: f32) -> f32 {
         }
         near = 1.0 / vec2f(r0, r1);
     }
-    if !(sine > 0.0) {
-        return 0.0;
-    }
+//#endif
     // Products of unit lengths: what a horizon cuts may be as near as the line is.
     let cosine = dot(q0 * near.x, q1 * near.y);
     let unit_sine = sine * near.x * near.y;
@@ -116,9 +124,6 @@ fn ltc_segment_integral(segment: LtcSegment, lobe: LtcLobe) -> f32 {
     var p1 = segment.p1;
 //#if surface_horizon
     let above = ltc_clip_above(p0, p1, segment.normal * segment.moment);
-    if above.share <= 0.0 {
-        return 0.0;
-    }
     share = above.share;
     p0 = above.p0;
     p1 = above.p1;
@@ -127,16 +132,10 @@ fn ltc_segment_integral(segment: LtcSegment, lobe: LtcLobe) -> f32 {
     let width = ltc_cosine_normal(lobe, segment.normal);
     let squared_width = dot(width, width);
     let stretch = segment.moment * lobe.area_scale;
-    if !(squared_width > 0.0 && stretch > 0.0) {
-        return 0.0;
-    }
     var q0 = ltc_cosine_from_target(lobe, p0);
     var q1 = ltc_cosine_from_target(lobe, p1);
 //#if cosine_horizon
     let seen = ltc_clip_above(q0, q1, width * (share * stretch));
-    if seen.share <= 0.0 {
-        return 0.0;
-    }
     share *= seen.share;
     q0 = seen.p0;
     q1 = seen.p1;
@@ -145,5 +144,7 @@ fn ltc_segment_integral(segment: LtcSegment, lobe: LtcLobe) -> f32 {
     let nearness = (along.x * width.y - along.y * width.x) / squared_width / stretch;
     let sine = share * stretch * sqrt(squared_width);
     let stretched = sqrt(dot(segment.normal, segment.normal) / squared_width) * lobe.determinant;
-    return stretched * ltc_cosine_along(q0, q1, sine, nearness) / (2.0 * LTC_PI);
+    let integral = stretched * ltc_cosine_along(q0, q1, sine, nearness) / (2.0 * LTC_PI);
+    // Whatever it is where nothing is left: chosen away, not multiplied.
+    return select(0.0, integral, (share > 0.0) & (squared_width > 0.0) & (stretch > 0.0) & (sine > 0.0));
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use ltc_shade_gpu::{Code, ExportError, Feature, Language, ShaderRequest};
+use ltc_shade_gpu::{Code, ExportError, Language, ShaderRequest};
 
 use crate::support::{errors, has, verdict};
 
@@ -34,11 +34,8 @@ fn texels(library: &str, four: &str) -> String {
 /// and each further feature. What naga's own validator sees (`modules.rs`) is every light alone under every choice, too.
 fn classes() -> Vec<ShaderRequest> {
     let mut list = ShaderRequest::permutations();
-    let choices = |request: &ShaderRequest| {
-        request.features.iter().filter(|feature| **feature != Feature::LeanQuads).count()
-    };
-    list.retain(|request| request.lights.len() != 1 || [0, 4].contains(&choices(request)));
-    assert_eq!(list.len(), 54);
+    list.retain(|request| request.lights.len() != 1 || [0, 4].contains(&request.features.len()));
+    assert_eq!(list.len(), 68);
     list
 }
 

@@ -328,37 +328,14 @@ LtcKept ConstructLtcKept(float3 arg0, float3 arg1, float arg2) {
 // (z x moment) / (z1 - z0), which cancels nowhere.
 LtcKept ltc_clip_above(float3 p0, float3 p1, float3 moment)
 {
-    bool local_1 = (bool)0;
-    bool local_2 = (bool)0;
-
-    if ((p0.z <= 0.0)) {
-        local_1 = (p1.z <= 0.0);
-    } else {
-        local_1 = false;
-    }
-    bool _e12 = local_1;
-    if (_e12) {
-        const LtcKept ltckept = ConstructLtcKept(p0, p1, 0.0);
-        return ltckept;
-    }
-    if ((p0.z >= 0.0)) {
-        local_2 = (p1.z >= 0.0);
-    } else {
-        local_2 = false;
-    }
-    bool _e24 = local_2;
-    if (_e24) {
-        const LtcKept ltckept_1 = ConstructLtcKept(p0, p1, 1.0);
-        return ltckept_1;
-    }
-    float inverse_rise = (1.0 / (p1.z - p0.z));
+    bool2 sunk = (float2(p0.z, p1.z) < (0.0).xx);
+    bool crosses = (sunk.x != sunk.y);
+    float inverse_rise = (1.0 / (crosses ? (p1.z - p0.z) : 1.0));
     float3 crossing = float3((-(moment.y) * inverse_rise), (moment.x * inverse_rise), 0.0);
-    if ((p0.z < 0.0)) {
-        const LtcKept ltckept_2 = ConstructLtcKept(crossing, p1, (p1.z * inverse_rise));
-        return ltckept_2;
-    }
-    const LtcKept ltckept_3 = ConstructLtcKept(p0, crossing, (-(p0.z) * inverse_rise));
-    return ltckept_3;
+    float kept = ((sunk.x ? p1.z : -(p0.z)) * inverse_rise);
+    float share = ((max(p0.z, p1.z) <= 0.0) ? 0.0 : (crosses ? kept : 1.0));
+    const LtcKept ltckept = ConstructLtcKept(((sunk.x & crosses) ? crossing : p0), ((sunk.y & crosses) ? crossing : p1), share);
+    return ltckept;
 }
 
 // A length whose square may underflow.
@@ -373,7 +350,7 @@ float ltc_length(float3 v)
 float ltc_cosine_along(float3 q0, float3 q1, float sine, float nearness)
 {
     float2 near = (float2)0;
-    bool local_3 = (bool)0;
+    bool local_1 = (bool)0;
 
     float2 squares = float2(dot(q0, q0), dot(q1, q1));
     near = rsqrt(squares);
@@ -381,31 +358,28 @@ float ltc_cosine_along(float3 q0, float3 q1, float sine, float nearness)
         const float _e15 = ltc_length(q0);
         const float _e16 = ltc_length(q1);
         if ((_e15 > 0.0)) {
-            local_3 = (_e16 > 0.0);
+            local_1 = (_e16 > 0.0);
         } else {
-            local_3 = false;
+            local_1 = false;
         }
-        bool _e24 = local_3;
+        bool _e24 = local_1;
         if (!(_e24)) {
             return 0.0;
         }
         near = ((1.0).xx / float2(_e15, _e16));
     }
-    if (!((sine > 0.0))) {
-        return 0.0;
-    }
-    float _e36 = near.x;
-    float _e39 = near.y;
-    float cosine = dot((q0 * _e36), (q1 * _e39));
-    float _e43 = near.x;
-    float _e46 = near.y;
-    float unit_sine = ((sine * _e43) * _e46);
+    float _e32 = near.x;
+    float _e35 = near.y;
+    float cosine = dot((q0 * _e32), (q1 * _e35));
+    float _e39 = near.x;
+    float _e42 = near.y;
+    float unit_sine = ((sine * _e39) * _e42);
     float half_tangent = ((cosine >= 0.0) ? (unit_sine / (1.0 + cosine)) : ((1.0 - cosine) / unit_sine));
-    float _e59 = near.x;
-    float _e63 = near.y;
-    float _e68 = near.x;
-    float _e70 = near.y;
-    float ends = ((half_tangent * ((q0.z * _e59) + (q1.z * _e63))) * (_e68 + _e70));
+    float _e55 = near.x;
+    float _e59 = near.y;
+    float _e64 = near.x;
+    float _e66 = near.y;
+    float ends = ((half_tangent * ((q0.z * _e55) + (q1.z * _e59))) * (_e64 + _e66));
     float x = abs(cosine);
     float g = (((((0.084654704 * x) + 0.5184987) * x) + 0.5707963) / ((((((0.088782445 * x) + 0.7727517) * x) + 1.6603152) * x) + 1.0));
     float acute = (((unit_sine * unit_sine) * half_tangent) * g);
@@ -417,20 +391,19 @@ float ltc_cosine_along(float3 q0, float3 q1, float sine, float nearness)
 // horizons.
 float ltc_segment_integral(LtcSegment segment, LtcLobe lobe)
 {
-    bool local_4 = (bool)0;
+    bool local_2 = (bool)0;
     float share = 1.0;
     float3 p0 = (float3)0;
     float3 p1 = (float3)0;
-    bool local_5 = (bool)0;
     float3 q0 = (float3)0;
     float3 q1 = (float3)0;
 
     if (segment.valid) {
-        local_4 = lobe.valid;
+        local_2 = lobe.valid;
     } else {
-        local_4 = false;
+        local_2 = false;
     }
-    bool _e7 = local_4;
+    bool _e7 = local_2;
     if (!(_e7)) {
         return 0.0;
     }
@@ -439,39 +412,29 @@ float ltc_segment_integral(LtcSegment segment, LtcLobe lobe)
     float3 _e16 = p0;
     float3 _e17 = p1;
     const LtcKept _e21 = ltc_clip_above(_e16, _e17, (segment.normal * segment.moment));
-    if ((_e21.share <= 0.0)) {
-        return 0.0;
-    }
     share = _e21.share;
     p0 = _e21.p0;
     p1 = _e21.p1;
-    const float3 _e30 = ltc_cosine_normal(lobe, segment.normal);
-    float squared_width = dot(_e30, _e30);
+    const float3 _e26 = ltc_cosine_normal(lobe, segment.normal);
+    float squared_width = dot(_e26, _e26);
     float stretch = (segment.moment * lobe.area_scale);
-    if ((squared_width > 0.0)) {
-        local_5 = (stretch > 0.0);
-    } else {
-        local_5 = false;
-    }
-    bool _e42 = local_5;
-    if (!(_e42)) {
-        return 0.0;
-    }
-    float3 _e45 = p0;
-    const float3 _e46 = ltc_cosine_from_target(lobe, _e45);
-    q0 = _e46;
-    float3 _e48 = p1;
-    const float3 _e49 = ltc_cosine_from_target(lobe, _e48);
-    q1 = _e49;
-    const float3 _e54 = ltc_cosine_from_target(lobe, (segment.p1 - segment.p0));
-    float nearness = ((((_e54.x * _e30.y) - (_e54.y * _e30.x)) / squared_width) / stretch);
-    float _e64 = share;
-    float sine = ((_e64 * stretch) * sqrt(squared_width));
+    float3 _e31 = p0;
+    const float3 _e32 = ltc_cosine_from_target(lobe, _e31);
+    q0 = _e32;
+    float3 _e34 = p1;
+    const float3 _e35 = ltc_cosine_from_target(lobe, _e34);
+    q1 = _e35;
+    const float3 _e40 = ltc_cosine_from_target(lobe, (segment.p1 - segment.p0));
+    float nearness = ((((_e40.x * _e26.y) - (_e40.y * _e26.x)) / squared_width) / stretch);
+    float _e50 = share;
+    float sine = ((_e50 * stretch) * sqrt(squared_width));
     float stretched = (sqrt((dot(segment.normal, segment.normal) / squared_width)) * lobe.determinant_);
-    float3 _e75 = q0;
-    float3 _e76 = q1;
-    const float _e77 = ltc_cosine_along(_e75, _e76, sine, nearness);
-    return ((stretched * _e77) / 6.2831855);
+    float3 _e61 = q0;
+    float3 _e62 = q1;
+    const float _e63 = ltc_cosine_along(_e61, _e62, sine, nearness);
+    float integral = ((stretched * _e63) / 6.2831855);
+    float _e67 = share;
+    return (((((_e67 > 0.0) & (squared_width > 0.0)) & (stretch > 0.0)) & (sine > 0.0)) ? integral : 0.0);
 }
 
 float ltc_line_unclamped(LtcLobe lobe, float3 p0, float3 p1, float radius)

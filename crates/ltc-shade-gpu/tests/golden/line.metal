@@ -310,32 +310,13 @@ LtcKept ltc_clip_above(
     metal::float3 p1,
     metal::float3 moment
 ) {
-    bool local_1 = {};
-    bool local_2 = {};
-    if (p0.z <= 0.0) {
-        local_1 = p1.z <= 0.0;
-    } else {
-        local_1 = false;
-    }
-    bool _e12 = local_1;
-    if (_e12) {
-        return LtcKept {p0, p1, 0.0};
-    }
-    if (p0.z >= 0.0) {
-        local_2 = p1.z >= 0.0;
-    } else {
-        local_2 = false;
-    }
-    bool _e24 = local_2;
-    if (_e24) {
-        return LtcKept {p0, p1, 1.0};
-    }
-    float inverse_rise = 1.0 / (p1.z - p0.z);
+    metal::bool2 sunk = metal::float2(p0.z, p1.z) < metal::float2(0.0);
+    bool crosses = sunk.x != sunk.y;
+    float inverse_rise = 1.0 / (crosses ? (p1.z - p0.z) : 1.0);
     metal::float3 crossing = metal::float3(-(moment.y) * inverse_rise, moment.x * inverse_rise, 0.0);
-    if (p0.z < 0.0) {
-        return LtcKept {crossing, p1, p1.z * inverse_rise};
-    }
-    return LtcKept {p0, crossing, -(p0.z) * inverse_rise};
+    float kept = (sunk.x ? p1.z : -(p0.z)) * inverse_rise;
+    float share = (metal::max(p0.z, p1.z) <= 0.0) ? 0.0 : (crosses ? kept : 1.0);
+    return LtcKept {(sunk.x & crosses) ? crossing : p0, (sunk.y & crosses) ? crossing : p1, share};
 }
 
 // A length whose square may underflow.
@@ -355,38 +336,35 @@ float ltc_cosine_along(
     float nearness
 ) {
     metal::float2 near = {};
-    bool local_3 = {};
+    bool local_1 = {};
     metal::float2 squares = metal::float2(metal::dot(q0, q0), metal::dot(q1, q1));
     near = metal::rsqrt(squares);
     if (!((metal::min(squares.x, squares.y) > 0.000000000000000000000000000001))) {
         float _e15 = ltc_length(q0);
         float _e16 = ltc_length(q1);
         if (_e15 > 0.0) {
-            local_3 = _e16 > 0.0;
+            local_1 = _e16 > 0.0;
         } else {
-            local_3 = false;
+            local_1 = false;
         }
-        bool _e24 = local_3;
+        bool _e24 = local_1;
         if (!(_e24)) {
             return 0.0;
         }
         near = metal::float2(1.0) / metal::float2(_e15, _e16);
     }
-    if (!((sine > 0.0))) {
-        return 0.0;
-    }
-    float _e36 = near.x;
-    float _e39 = near.y;
-    float cosine = metal::dot(q0 * _e36, q1 * _e39);
-    float _e43 = near.x;
-    float _e46 = near.y;
-    float unit_sine = (sine * _e43) * _e46;
+    float _e32 = near.x;
+    float _e35 = near.y;
+    float cosine = metal::dot(q0 * _e32, q1 * _e35);
+    float _e39 = near.x;
+    float _e42 = near.y;
+    float unit_sine = (sine * _e39) * _e42;
     float half_tangent = (cosine >= 0.0) ? (unit_sine / (1.0 + cosine)) : ((1.0 - cosine) / unit_sine);
-    float _e59 = near.x;
-    float _e63 = near.y;
-    float _e68 = near.x;
-    float _e70 = near.y;
-    float ends = (half_tangent * ((q0.z * _e59) + (q1.z * _e63))) * (_e68 + _e70);
+    float _e55 = near.x;
+    float _e59 = near.y;
+    float _e64 = near.x;
+    float _e66 = near.y;
+    float ends = (half_tangent * ((q0.z * _e55) + (q1.z * _e59))) * (_e64 + _e66);
     float x = metal::abs(cosine);
     float g = ((((0.084654704 * x) + 0.5184987) * x) + 0.5707963) / ((((((0.088782445 * x) + 0.7727517) * x) + 1.6603152) * x) + 1.0);
     float acute = ((unit_sine * unit_sine) * half_tangent) * g;
@@ -400,19 +378,18 @@ float ltc_segment_integral(
     LtcSegment segment,
     LtcLobe lobe
 ) {
-    bool local_4 = {};
+    bool local_2 = {};
     float share = 1.0;
     metal::float3 p0 = {};
     metal::float3 p1 = {};
-    bool local_5 = {};
     metal::float3 q0 = {};
     metal::float3 q1 = {};
     if (segment.valid) {
-        local_4 = lobe.valid;
+        local_2 = lobe.valid;
     } else {
-        local_4 = false;
+        local_2 = false;
     }
-    bool _e7 = local_4;
+    bool _e7 = local_2;
     if (!(_e7)) {
         return 0.0;
     }
@@ -421,39 +398,29 @@ float ltc_segment_integral(
     metal::float3 _e16 = p0;
     metal::float3 _e17 = p1;
     LtcKept _e21 = ltc_clip_above(_e16, _e17, segment.normal * segment.moment);
-    if (_e21.share <= 0.0) {
-        return 0.0;
-    }
     share = _e21.share;
     p0 = _e21.p0;
     p1 = _e21.p1;
-    metal::float3 _e30 = ltc_cosine_normal(lobe, segment.normal);
-    float squared_width = metal::dot(_e30, _e30);
+    metal::float3 _e26 = ltc_cosine_normal(lobe, segment.normal);
+    float squared_width = metal::dot(_e26, _e26);
     float stretch = segment.moment * lobe.area_scale;
-    if (squared_width > 0.0) {
-        local_5 = stretch > 0.0;
-    } else {
-        local_5 = false;
-    }
-    bool _e42 = local_5;
-    if (!(_e42)) {
-        return 0.0;
-    }
-    metal::float3 _e45 = p0;
-    metal::float3 _e46 = ltc_cosine_from_target(lobe, _e45);
-    q0 = _e46;
-    metal::float3 _e48 = p1;
-    metal::float3 _e49 = ltc_cosine_from_target(lobe, _e48);
-    q1 = _e49;
-    metal::float3 _e54 = ltc_cosine_from_target(lobe, segment.p1 - segment.p0);
-    float nearness = (((_e54.x * _e30.y) - (_e54.y * _e30.x)) / squared_width) / stretch;
-    float _e64 = share;
-    float sine = (_e64 * stretch) * metal::sqrt(squared_width);
+    metal::float3 _e31 = p0;
+    metal::float3 _e32 = ltc_cosine_from_target(lobe, _e31);
+    q0 = _e32;
+    metal::float3 _e34 = p1;
+    metal::float3 _e35 = ltc_cosine_from_target(lobe, _e34);
+    q1 = _e35;
+    metal::float3 _e40 = ltc_cosine_from_target(lobe, segment.p1 - segment.p0);
+    float nearness = (((_e40.x * _e26.y) - (_e40.y * _e26.x)) / squared_width) / stretch;
+    float _e50 = share;
+    float sine = (_e50 * stretch) * metal::sqrt(squared_width);
     float stretched = metal::sqrt(metal::dot(segment.normal, segment.normal) / squared_width) * lobe.determinant;
-    metal::float3 _e75 = q0;
-    metal::float3 _e76 = q1;
-    float _e77 = ltc_cosine_along(_e75, _e76, sine, nearness);
-    return (stretched * _e77) / 6.2831855;
+    metal::float3 _e61 = q0;
+    metal::float3 _e62 = q1;
+    float _e63 = ltc_cosine_along(_e61, _e62, sine, nearness);
+    float integral = (stretched * _e63) / 6.2831855;
+    float _e67 = share;
+    return ((((_e67 > 0.0) & (squared_width > 0.0)) & (stretch > 0.0)) & (sine > 0.0)) ? integral : 0.0;
 }
 
 float ltc_line_unclamped(

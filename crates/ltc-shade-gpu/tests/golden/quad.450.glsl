@@ -10,7 +10,8 @@
 // alpha >= 0.0001.
 //
 // Tables (`ltc export NAME --format ktx2 --precision f32`): 3 groups of RGBA32F texels, m00 m01 m02 m10 |
-// m11 m12 m20 m21 | m22 magnitude fresnel 0, with M row-major.
+// m11 m12 m20 m21 | m22 magnitude fresnel 0, with M row-major. A last number of 1 says that the two before it are what
+// a closed form leaves of them; the lookup adds it (`ltc_table::ClosedForm`).
 //   isotropic: 2D array, x = alpha node, y = theta node, layer = group; LtcAxes has theta and alpha.
 // LtcAxis of an axis of the manifest with `len` nodes over [from, to], u its mapping:
 //   low = u(from), scale = (len - 1) / (u(to) - u(from)), last = len - 1, mapping =
@@ -55,7 +56,8 @@ struct LtcPlace {
     float t;
 };
 // The three texels of an entry, or of an interpolation between entries:
-// m00 m01 m02 m10, m11 m12 m20 m21, m22 magnitude fresnel 0.
+// m00 m01 m02 m10, m11 m12 m20 m21, m22 magnitude fresnel 0; in a table with a closed form the third is m22, what the form leaves of both,
+// and 1.
 struct LtcTexels {
     vec4 g0;
     vec4 g1;
@@ -114,6 +116,11 @@ const uint LTC_SQRT = 1u;
 const uint LTC_SQRT_ONE_MINUS_COS = 2u;
 const uint LTC_HALF_TANGENT = 3u;
 const uint LTC_GRAZING_HALF_TANGENT = 4u;
+const vec2 LTC_FORM_M1_ = vec2(7.5, 0.035);
+const vec2 LTC_FORM_M2_ = vec2(0.5, 0.4);
+const float LTC_FORM_LEAST_M = 1e-6;
+const vec3 LTC_FORM_MAGNITUDE = vec3(-0.471, -0.924, 0.032);
+const vec4 LTC_FORM_FRESNEL = vec4(0.869, 0.118, -0.293, -1.372);
 
 
 float ltc_largest_component(vec3 v) {
