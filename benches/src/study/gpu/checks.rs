@@ -119,8 +119,8 @@ fn a_form_that_is_wrong_is_not_timed() -> Result<(), StudyError> {
     };
     let reads = Reads { points: &points, ..Reads::default() };
     let sound = sources::lights(Find::Formula, Integrate::Shipped(LightKind::Quad, sources::BOTH_HORIZONS));
-    // A wrong coefficient of the edge.
-    let planted = sound.replace("1.5707963)", "1.60)");
+    // A wrong coefficient of the arc.
+    let planted = sound.replace("1.5707963 * square", "1.60 * square");
     assert_ne!(planted, sound);
     for (wgsl, good) in [(&sound, true), (&planted, false)] {
         let mut bench = Bench::new(&gpu, [64, 36], 500)?;

@@ -440,11 +440,6 @@ float ltc_edge_angle(float sine, float cosine) {
     return _e2;
 }
 
-// theta / sin(theta) from its cosine, in [0, 1]: relative error 2e-8 before rounding.
-float ltc_angle_over_sine(float cosine) {
-    return (((((0.18455717 * cosine) + 1.330676) * cosine) + 1.5707963) / ((((((0.040163346 * cosine) + 0.5621138) * cosine) + 1.4837523) * cosine) + 1.0));
-}
-
 LtcBoundary ltc_boundary() {
     LtcCorner none = LtcCorner(vec3(0.0), vec3(0.0));
     return LtcBoundary(none, none, false, none, none, false, false, 0.0);
