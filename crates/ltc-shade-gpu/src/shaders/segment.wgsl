@@ -72,13 +72,11 @@ fn ltc_clip_above(p0: vec3f, p1: vec3f, moment: vec3f) -> LtcKept {
     return LtcKept(select(p0, crossing, sunk.x & crosses), select(p1, crossing, sunk.y & crosses), share);
 }
 
-//#ifnot lean_lights
 // A length whose square may underflow.
 fn ltc_length(v: vec3f) -> f32 {
     let scale = ltc_largest_component(v);
     return select(0.0, scale * length(v / max(scale, LTC_TINY)), scale > LTC_TINY);
 }
-//#endif
 
 // (c_z / d) (angle - sin angle) + tan(angle / 2) (q0_z / |q0| + q1_z / |q1|) (1 / |q0| + 1 / |q1|), the angle being that
 // between q0 and q1, sine = |q0 x q1|, nearness = c_z / d with d the distance of the line, c towards its nearest point.
