@@ -49,8 +49,9 @@ fn is_squares(power: &u32) -> bool {
 /// Magnitude and Fresnel term of every entry.
 pub type Channels = (Vec<f64>, Vec<f64>);
 
-/// Integrates both over every entry's lobe, then moves the entries to the least sum of a power of the interpolation error
-/// over random queries up to grazing, held to their own values where few queries come.
+/// Integrates both over every entry's lobe, then moves the entries to the least sum of a power of the error of lookups over
+/// random queries up to grazing, held to their own values where few queries come. With a closed form `g` the error of a lookup
+/// is that of `g(query) + Σ wᵢ (entryᵢ − g(nodeᵢ))`, and `magnitude` of an entry may be up to 0.02 beyond the most there is.
 ///
 /// # Errors
 /// [`FitError::Table`] for a closed form of an isotropic table; none for other valid axes and settings.
@@ -87,15 +88,15 @@ impl Form {
     }
 
     /// What lookups of a query add to the interpolation of entries: the form there less the interpolation of its values.
-    fn added(&self, query: &Query, corners: &[Corner]) -> [f64; 2] {
-        let wo = crate::direction(query.theta, query.phi);
-        let mut added = self.form.at(wo, query.alpha_x, query.alpha_y);
+    fn added(&self, query: &Query, corners: &[Corner]) -> Result<[f64; 2], FitError> {
+        let widths = query.validate()?;
+        let mut added = self.form.at(crate::direction(query.theta, query.phi), widths.x(), widths.y());
         for Corner { index, weight } in corners {
             for (added, at) in added.iter_mut().zip(self.at_entries[*index]) {
                 *added -= weight * at;
             }
         }
-        added
+        Ok(added)
     }
 }
 
@@ -167,7 +168,10 @@ impl<'a> ChannelStage<'a> {
     /// The equation of a query, for the entries that own themselves: those that share a lobe share a value.
     fn row(&self, query: &Query, item: &Item) -> Result<Row, FitError> {
         let mut corners = query_corners(self.axes, &query.fold()?);
-        let added = self.form.as_ref().map_or([0.0; 2], |form| form.added(query, &corners));
+        let added = match &self.form {
+            Some(form) => form.added(query, &corners)?,
+            None => [0.0; 2],
+        };
         for corner in &mut corners {
             corner.index = self.lattice.ties[corner.index].owner;
         }
