@@ -42,8 +42,9 @@ fn planted(
     let (mut m, mut magnitude, mut fresnel) =
         (table.m().to_vec(), table.magnitude().to_vec(), table.fresnel().to_vec());
     change(&mut m, &mut magnitude, &mut fresnel);
-    let table = Table::new(table.axes().to_vec(), m, magnitude, fresnel, table.cells().clone()).unwrap();
-    let payload = TableVersion::payload_of(&table).unwrap();
+    let other = Table::new(table.axes().to_vec(), m, magnitude, fresnel, table.cells().clone()).unwrap();
+    let other = other.with_closed_form(table.closed_form()).unwrap();
+    let payload = TableVersion::payload_of(&other).unwrap();
     let mut manifest = version.manifest().clone();
     manifest.digest = digest(&payload);
     TableVersion::new(manifest, payload).unwrap()
@@ -181,7 +182,9 @@ fn entries_are_sound() {
         for (i, m) in table.m().iter().enumerate() {
             assert!(m.is_finite() && m.determinant() > 0.0, "{name}, entry {i}: {m}");
             let (n, f) = (table.magnitude()[i], table.fresnel()[i]);
-            assert!((0.0..=1.0).contains(&n) && (0.0..=n).contains(&f), "{name}, entry {i}: {n} {f}");
+            // Between a closed form and lookups that are clamped, an entry may be a little more than there is.
+            let most = if table.closed_form().is_some() { 1.02 } else { 1.0 };
+            assert!((0.0..=most).contains(&n) && (0.0..=n).contains(&f), "{name}, entry {i}: {n} {f}");
         }
     }
 }

@@ -31,10 +31,18 @@ fn worst(tables: &Catalogue, name: &str, isotropic: bool) -> Result<(), Box<dyn 
         .map_err(|e| e.to_string())?;
     errors.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
     let count = errors.len() as f64;
-    let (n, f) = errors.iter().fold((0.0, 0.0), |(n, f), e| (n + e.0.abs() / count, f + e.1.abs() / count));
-    println!("{name}: magnitude {n:.1e} mean, Fresnel {f:.1e} mean");
-    let beyond = |limit: f64| errors.iter().filter(|e| e.0.abs() > limit).count() as f64 / count * 100.0;
-    println!("  magnitude off by more than 0.01 in {:.2} %, 0.02 in {:.2} %", beyond(0.01), beyond(0.02));
+    for (channel, of) in [("magnitude", 0), ("Fresnel", 1)] {
+        let sizes = || errors.iter().map(|(n, f, _)| [n, f][of].abs());
+        let (mean, most) = (sizes().sum::<f64>() / count, sizes().fold(0.0, f64::max));
+        let beyond = |limit: f64| sizes().filter(|size| *size > limit).count() as f64 / count * 100.0;
+        println!(
+            "{}@{}, {channel}: mean {mean:.2e}, largest {most:.4}, off by more than 0.01 in {:.2} %, 0.02 in {:.2} %",
+            version.manifest().name,
+            version.manifest().version,
+            beyond(0.01),
+            beyond(0.02)
+        );
+    }
     for (n, f, q) in errors.iter().take(8) {
         println!(
             "  {n:+.4} {f:+.4} at θ {:.2}°, φ {:.1}°, α {:.4} × {:.4}",
@@ -142,7 +150,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let tables = std::env::args().nth(1).unwrap_or_else(|| "tables".to_owned());
     let catalogue = Catalogue::read_folder(Path::new(&tables))?;
     worst(&catalogue, "ggx-isotropic", true)?;
-    worst(&catalogue, "ggx-anisotropic", false)?;
+    for version in ["ggx-anisotropic@2", "ggx-anisotropic@3", "ggx-anisotropic"] {
+        worst(&catalogue, version, false)?;
+    }
     for mapping in THETA_MAPPINGS {
         for len in [8, 12, 16, 24, 32, 64] {
             let (error, alpha, theta) = limit(mapping, len);

@@ -3,7 +3,7 @@
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 use ltc_core::points::SplitMix64;
-use ltc_table::Query;
+use ltc_table::{Axis, Mapping, Query};
 
 /// α < this counts as narrow in the statistics.
 pub const NARROW_ALPHA: f64 = 0.14;
@@ -65,6 +65,24 @@ pub fn grazing(rng: &mut SplitMix64, count: usize, isotropic: bool) -> Vec<Query
         .collect()
 }
 
+/// Queries even over anisotropic axes, in the coordinates that their nodes are even in (θ of every other query: in itself), up to
+/// 89.5°: what [`grazing`] leaves nearly empty, such as rough lobes seen along their smooth axis. None for other axes.
+pub fn over(rng: &mut SplitMix64, count: usize, axes: &[Axis]) -> Vec<Query> {
+    let [theta, phi, alpha, lambda] = axes else { return Vec::new() };
+    let theta_max = 89.5_f64.to_radians().clamp(theta.domain[0], theta.domain[1]);
+    let mut value = |axis: &Axis, mapping: Mapping, end: f64| {
+        mapping.value(rng.range(mapping.coordinate(axis.domain[0]), mapping.coordinate(end)))
+    };
+    (0..count)
+        .map(|i| {
+            let views = if i % 2 == 0 { Mapping::Linear } else { theta.mapping };
+            let [theta, phi] = [value(theta, views, theta_max), value(phi, phi.mapping, phi.domain[1])];
+            let [alpha, lambda] = [alpha, lambda].map(|axis| value(axis, axis.mapping, axis.domain[1]));
+            Query { theta, phi, alpha_x: alpha, alpha_y: alpha * lambda }
+        })
+        .collect()
+}
+
 /// Whether a query belongs to the draw that magnitude and Fresnel are judged by, or is just beyond its ends.
 pub(crate) fn is_judged(query: &Query) -> bool {
     let (alpha, lambda) = (query.alpha_x, query.alpha_y / query.alpha_x);
@@ -90,6 +108,28 @@ fn one(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn queries_over_the_axes_are_even_in_their_coordinates() {
+        let axes = crate::FitSpec::preset("ggx-anisotropic").unwrap().axes;
+        let queries = over(&mut SplitMix64::new(1), 20_000, &axes);
+        assert_eq!(queries.len(), 20_000);
+        assert!(queries.iter().all(|q| q.validate().is_ok() && q.theta <= 89.51_f64.to_radians()));
+        // Each of seven cells holds a seventh; a standard deviation is √(20,000/7 · 6/7) = 49.
+        for (axis, value) in [
+            (&axes[1], (|q| q.phi) as fn(&Query) -> f64),
+            (&axes[2], |q| q.alpha_x),
+            (&axes[3], |q| q.alpha_y / q.alpha_x),
+        ] {
+            let mut counts = [0_i32; 7];
+            queries.iter().for_each(|q| counts[axis.locate(value(q)).0] += 1);
+            assert!(counts.iter().all(|count| (count - 2857).abs() < 250), "{:?}: {counts:?}", axis.quantity);
+        }
+        let below = |odd: usize| queries.iter().skip(odd).step_by(2).filter(|q| q.theta < 0.7).count() as f64;
+        assert!((below(0) / 1e4 - 0.7 / 89.5_f64.to_radians()).abs() < 0.02);
+        assert!((below(1) / 1e4 - 0.35_f64.tan() / 44.75_f64.to_radians().tan()).abs() < 0.02);
+        assert!(over(&mut SplitMix64::new(1), 9, &axes[..2]).is_empty());
+    }
 
     #[test]
     fn the_draw_covers_what_it_says() {

@@ -1,6 +1,6 @@
 //! From a specification to a table version.
 
-use ltc_table::{BrdfInfo, ChannelInfo, Errors, Manifest, Table, TableVersion, digest::digest};
+use ltc_table::{BrdfInfo, ChannelInfo, ClosedForm, Errors, Manifest, Table, TableVersion, digest::digest};
 
 use crate::{Brdf, FitError, FitRun, FitSpec, Fitted, Layout, Observer, Plan};
 
@@ -66,7 +66,7 @@ pub fn publish_with(
         digest: digest(&payload),
         payload_bytes: payload.len() as u64,
         axes: spec.axes.clone(),
-        channels: channel_infos(),
+        channels: channel_infos(spec.channels.closed_form),
         lobes: 1,
         normalisation: normalisation(spec.joint.layout).to_owned(),
         handedness: "right-handed frame, x = tangent (alpha_x), z = normal; m maps cosine space to the lobe; det m > 0"
@@ -97,14 +97,15 @@ fn normalisation(layout: Layout) -> &'static str {
     }
 }
 
-pub(crate) fn channel_infos() -> Vec<ChannelInfo> {
+/// What a fitted table's payload holds.
+pub(crate) fn channel_infos(closed_form: Option<ClosedForm>) -> Vec<ChannelInfo> {
     let info = |name: &str, shape: &[usize], meaning: &str| ChannelInfo {
         name: name.to_owned(),
         shape: shape.to_vec(),
         meaning: meaning.to_owned(),
         closed_form: None,
     };
-    vec![
+    let mut infos = vec![
         info("m", &[3, 3], "row-major matrix, cosine space to lobe; interpolate it, then invert"),
         info("magnitude", &[], "n = integral of rho cos at F = 1 (base colour 1)"),
         info(
@@ -116,5 +117,9 @@ pub(crate) fn channel_infos() -> Vec<ChannelInfo> {
         info("cell_tv", &[], "total variation between the entry's lobe and the BRDF's"),
         info("cell_leak", &[], "share of the entry's lobe below the horizon"),
         info("cell_condition", &[], "condition number of the entry's matrix"),
-    ]
+    ];
+    if let Some(form) = closed_form {
+        form.describe(&mut infos);
+    }
+    infos
 }

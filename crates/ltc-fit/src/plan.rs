@@ -138,14 +138,14 @@ impl Cost {
             memory: entries
                 .saturating_mul(PER_ENTRY)
                 .saturating_add((joint.queries as u64).saturating_mul(PER_QUERY))
-                .saturating_add((channels.queries as u64).saturating_mul(PER_ROW)),
+                .saturating_add((channels.all_queries() as u64).saturating_mul(PER_ROW)),
             seconds: [
                 (ENTRIES, alone_again * (alone * DRAW + comparisons * derive)),
                 (
                     JOINT,
                     joint.steps as f64 * (STEP + product(joint.queries, joint.samples) * (DRAW + DERIVE)),
                 ),
-                (CHANNELS, nodes_and_queries(channels.samples, channels.queries) * DRAW),
+                (CHANNELS, nodes_and_queries(channels.samples, channels.all_queries()) * DRAW),
                 (
                     MEASUREMENT,
                     nodes_and_queries(measure.samples, measure.queries) * (3.0 * DRAW + 2.0 * COMPARE),
@@ -168,7 +168,7 @@ impl Cost {
         let evaluated = |samples: usize, queries: usize| {
             share(pieces::length(samples), self.entries.saturating_add(queries as u64))
         };
-        let of_channels = evaluated(spec.channels.samples, spec.channels.queries);
+        let of_channels = evaluated(spec.channels.samples, spec.channels.all_queries());
         let of_measurement = evaluated(spec.measure.samples, spec.measure.queries);
         let pieces = [
             (ENTRIES, entries.1 * alone),

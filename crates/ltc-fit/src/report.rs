@@ -262,7 +262,7 @@ fn stages(plan: &Plan<'_>, fitted: &Fitted) -> Vec<StageReport> {
         let samples = match time.stage.as_str() {
             ENTRIES => comparisons * spec.entries.samples,
             JOINT => spec.joint.steps * spec.joint.queries * spec.joint.samples,
-            CHANNELS => (nodes + spec.channels.queries) * spec.channels.samples,
+            CHANNELS => (nodes + spec.channels.all_queries()) * spec.channels.samples,
             MEASUREMENT => (2 * nodes + centres + spec.measure.queries) * spec.measure.samples,
             _ => 0,
         };

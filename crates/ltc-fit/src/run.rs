@@ -201,7 +201,9 @@ impl<'a> FitRun<'a> {
         let m = m.iter().map(DMat3::from_cols_array).collect();
         let Measured { tv, leak, condition, errors } = measured;
         let cells = CellStats { tv, leak, condition };
-        let table = Table::new(self.plan.spec().axes.clone(), m, magnitude, fresnel, cells)?;
+        let spec = self.plan.spec();
+        let table = Table::new(spec.axes.clone(), m, magnitude, fresnel, cells)?
+            .with_closed_form(spec.channels.closed_form)?;
         Ok(Fitted { table, errors, entries, times })
     }
 
@@ -240,7 +242,7 @@ impl<'a> FitRun<'a> {
 
     fn fit_channels(&mut self, observer: Observer<'_>) -> Result<(), FitError> {
         let (plan, spec) = (self.plan, self.plan.spec());
-        let stage = ChannelStage::new(plan.brdf(), &spec.axes, plan.lattice(), spec.channels);
+        let stage = ChannelStage::new(plan.brdf(), &spec.axes, plan.lattice(), spec.channels)?;
         let (items, total) = (&mut self.state.evaluated, stage.len());
         pieces::next(items, total, spec.channels.samples, |lobe, i| stage.item(lobe, i))?;
         let done = items.len();
@@ -255,7 +257,8 @@ impl<'a> FitRun<'a> {
         let (brdf, spec) = (self.plan.brdf(), self.plan.spec());
         let (magnitude, fresnel) = self.state.channels.clone().unwrap_or_default();
         let m = self.state.m.iter().map(DMat3::from_cols_array).collect();
-        let bare = Table::new(spec.axes.clone(), m, magnitude, fresnel, CellStats::default())?;
+        let bare = Table::new(spec.axes.clone(), m, magnitude, fresnel, CellStats::default())?
+            .with_closed_form(spec.channels.closed_form)?;
         let stage = Measurement::new(brdf, &bare, &spec.floors, spec.measure)?;
         let (items, total) = (&mut self.state.evaluated, stage.len());
         pieces::next(items, total, spec.measure.samples, |lobe, i| stage.item(lobe, i))?;
@@ -279,7 +282,7 @@ impl<'a> FitRun<'a> {
 fn evaluations(plan: &Plan<'_>, state: &FitState) -> usize {
     let (spec, nodes) = (plan.spec(), plan.lattice().nodes.len());
     match (&state.channels, &state.errors) {
-        (None, None) if !state.m.is_empty() => nodes + spec.channels.queries,
+        (None, None) if !state.m.is_empty() => nodes + spec.channels.all_queries(),
         (Some(_), None) => 2 * nodes + 2 * spec.measure.queries + grid_errors::cells(&spec.axes),
         _ => 0,
     }

@@ -2,7 +2,7 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use ltc_table::{Axis, Floors, Manifest, Mapping, Quantity, check_name};
+use ltc_table::{Axis, ClosedForm, Floors, Manifest, Mapping, Quantity, check_name};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -66,11 +66,11 @@ impl FitSpec {
             return Ok(spec);
         }
         let layout = if name == "ggx-isotropic-dropin" { Layout::DropIn } else { Layout::Matrix };
-        let (axes, steps, learning_rate, channel_queries, power) = match name {
+        let (axes, steps, learning_rate, channel_queries, power, closed_form) = match name {
             "ggx-isotropic" | "ggx-isotropic-dropin" => {
-                (ltc_table::drop_in::axes(64).to_vec(), 200, 3e-3, 20_000, 2)
+                (ltc_table::drop_in::axes(64).to_vec(), 200, 3e-3, 20_000, 2, None)
             }
-            "ggx-anisotropic" => (anisotropic_axes(), 1500, 6e-3, 60_000, 4),
+            "ggx-anisotropic" => (anisotropic_axes(), 1500, 6e-3, 60_000, 4, Some(ClosedForm::GgxSmith)),
             _ => {
                 let known = Self::PRESETS.join(", ");
                 return Err(FitError::NoSuchPreset { name: name.to_owned(), known });
@@ -84,7 +84,13 @@ impl FitSpec {
             objective: "total_variation".to_owned(),
             entries: EntrySettings::new(512, 100),
             joint: JointSettings { steps, queries: 2048, samples: 256, learning_rate, seed: 3, layout },
-            channels: ChannelSettings { samples: 2048, queries: channel_queries, seed: 5, power },
+            channels: ChannelSettings {
+                samples: 2048,
+                queries: channel_queries,
+                seed: 5,
+                power,
+                closed_form,
+            },
             measure: MeasureSettings { queries: 3000, samples: 4096, seed: 77, layout },
         })
     }
@@ -147,7 +153,24 @@ impl FitSpec {
             return wrong("axes", format!("have {nodes} nodes in all, must have at most {MAX_NODES}"));
         }
         self.validate_layout()?;
+        self.validate_closed_form()?;
         self.validate_numbers()
+    }
+
+    fn validate_closed_form(&self) -> Result<(), FitError> {
+        let Some(form) = self.channels.closed_form else { return Ok(()) };
+        let wrong = |reason| {
+            Err(FitError::Spec { field: "channels.closed_form", reason: format!("{} {reason}", form.name()) })
+        };
+        match form {
+            ClosedForm::GgxSmith if self.brdf != GgxFamily.name() => {
+                wrong(format!("is for the BRDF \"{}\", this is \"{}\"", GgxFamily.name(), self.brdf))
+            }
+            ClosedForm::GgxSmith if self.axes.len() != 4 => {
+                wrong("is for anisotropic tables (theta, phi, alpha, lambda)".to_owned())
+            }
+            ClosedForm::GgxSmith => Ok(()),
+        }
     }
 
     fn validate_layout(&self) -> Result<(), FitError> {
@@ -251,12 +274,7 @@ fn anisotropic_axes() -> Vec<Axis> {
     alpha.domain[0] = 0.005;
     let mut lambda = Axis::full(Lambda, Mapping::Sqrt, 8);
     lambda.domain[0] = 0.03;
-    vec![
-        Axis::full(Theta, Mapping::GrazingHalfTangent, 8),
-        Axis::full(Phi, Mapping::Linear, 8),
-        alpha,
-        lambda,
-    ]
+    vec![Axis::full(Theta, Mapping::HalfTangent, 8), Axis::full(Phi, Mapping::Linear, 8), alpha, lambda]
 }
 
 #[cfg(test)]
@@ -298,6 +316,10 @@ mod tests {
             broken(|s| s.axes.iter_mut().for_each(|a| a.len = 4096)).starts_with("axes: have 2814749767")
         );
         assert!(broken(|s| s.axes[1].domain = [0.1, 1.0]).starts_with("axes[1]:"));
+        let other = broken(|s| s.brdf = "beckmann".into());
+        assert!(other.starts_with("channels.closed_form: ggx-smith is for the BRDF \"ggx\""), "{other}");
+        let flat = broken(|s| s.axes = ltc_table::drop_in::axes(8).to_vec());
+        assert!(flat.starts_with("channels.closed_form: ggx-smith is for anisotropic tables"), "{flat}");
         assert!(broken(|s| s.measure.layout = Layout::DropIn).starts_with("measure.layout:"));
         let drop_in = broken(|s| (s.joint.layout, s.measure.layout) = (Layout::DropIn, Layout::DropIn));
         assert!(drop_in.starts_with("axes: of the layout drop_in"), "{drop_in}");

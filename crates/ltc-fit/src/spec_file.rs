@@ -149,6 +149,11 @@ const COMMENTS: &[(&str, &str)] = &[
         "channels.power",
         "Power of the error that is minimised: 2 (left out, it is this) for the least mean, up to 8 for a smaller largest.",
     ),
+    (
+        "channels.closed_form",
+        "Formula that entries are taken off before interpolation, and that is added after it: ggx-smith, for the BRDF ggx and\n\
+         anisotropic axes; left out, there is none. With it as many queries again are drawn even over the axes.",
+    ),
     ("measure", "Last, how good the table is."),
     ("measure.queries", "Random queries of the standard draw."),
     ("measure.samples", "Samples of the lobe at each query and at each entry."),

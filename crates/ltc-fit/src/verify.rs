@@ -83,6 +83,10 @@ fn check_manifest(version: &TableVersion, spec: &FitSpec, brdf: &dyn Brdf, fault
         ("fit.name is not name", spec.name == manifest.name),
         ("fit.floors is not floors", spec.floors == manifest.floors),
         ("brdf.name is not that of fit.brdf", manifest.brdf.name == brdf.name()),
+        (
+            "fit.channels.closed_form is not that of the payload",
+            spec.channels.closed_form == version.table().closed_form(),
+        ),
         ("brdf.parameters are not those of fit.brdf", manifest.brdf.parameters == brdf.parameters()),
     ] {
         if !same {
@@ -90,7 +94,8 @@ fn check_manifest(version: &TableVersion, spec: &FitSpec, brdf: &dyn Brdf, fault
         }
     }
     let shapes: Vec<_> = manifest.channels.iter().map(|c| (c.name.clone(), c.shape.clone())).collect();
-    let expected: Vec<_> = channel_infos().into_iter().map(|c| (c.name, c.shape)).collect();
+    let infos = channel_infos(spec.channels.closed_form);
+    let expected: Vec<_> = infos.into_iter().map(|c| (c.name, c.shape)).collect();
     if shapes != expected {
         faults.push(format!("channels: stated {shapes:?}, found {expected:?}"));
     }

@@ -56,8 +56,8 @@ fn altered(
     };
     change(&mut arrays);
     let Arrays { m, magnitude, fresnel, cells } = arrays;
-    let payload =
-        TableVersion::payload_of(&Table::new(table.axes().to_vec(), m, magnitude, fresnel, cells)?)?;
+    let other = Table::new(table.axes().to_vec(), m, magnitude, fresnel, cells)?;
+    let payload = TableVersion::payload_of(&other.with_closed_form(table.closed_form())?)?;
     let mut manifest = version.manifest().clone();
     manifest.digest = digest(&payload);
     manifest.payload_bytes = payload.len() as u64;
@@ -104,6 +104,26 @@ fn every_entry_of_every_array_is_watched() {
             }
         }
     }
+}
+
+#[test]
+fn the_closed_form_is_watched() {
+    let version = version(false);
+    let form = version.table().closed_form();
+    assert!(form.is_some());
+    let bare = version.table().clone().with_closed_form(None).unwrap();
+    let payload = TableVersion::payload_of(&bare).unwrap();
+    let mut manifest = version.manifest().clone();
+    (manifest.digest, manifest.payload_bytes) = (digest(&payload), payload.len() as u64);
+    // Manifest and payload must say the same.
+    let error = TableVersion::new(manifest.clone(), payload.clone()).unwrap_err();
+    assert!(matches!(error, TableError::Disagreement { .. }), "{error}");
+    manifest.channels.iter_mut().for_each(|channel| channel.closed_form = None);
+    let found = faults(&TableVersion::new(manifest, payload).unwrap());
+    assert!(found.iter().any(|fault| fault.starts_with("fit.channels.closed_form")), "{found:?}");
+    assert!(found.iter().any(|fault| fault.starts_with("errors.magnitude_mean")), "{found:?}");
+    let silent = altered(version, nothing, |m| m.fit["channels"]["closed_form"] = serde_json::Value::Null);
+    assert!(faults(&silent.unwrap()).iter().any(|fault| fault.starts_with("fit.channels.closed_form")));
 }
 
 #[test]

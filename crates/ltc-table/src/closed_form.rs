@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::{Axis, TableError};
+use crate::{Axis, ChannelInfo, TableError};
 
 /// A formula for the parts of magnitude and Fresnel term that change too fast between entries to be interpolated.
 ///
@@ -72,6 +72,29 @@ impl ClosedForm {
         Self::ALL.into_iter().find(|form| form.code() == code).ok_or(TableError::UnknownClosedForm { code })
     }
 
+    /// Says in the descriptions of magnitude and Fresnel term how they are read with this.
+    pub fn describe(self, channels: &mut [ChannelInfo]) {
+        for (name, reading) in ["magnitude", "fresnel"].into_iter().zip(self.reading()) {
+            for channel in channels.iter_mut().filter(|channel| channel.name == name) {
+                channel.meaning = format!("{}; {reading}", channel.meaning);
+                channel.closed_form = Some(self);
+            }
+        }
+    }
+
+    /// How to read magnitude, and how the Fresnel term.
+    fn reading(self) -> [String; 2] {
+        match self {
+            Self::GgxSmith => ggx_smith_in_words().map(|g| {
+                format!(
+                    "interpolate entry - g(entry), add g(query), clamp to [0, 1] (plain interpolation of entries is less exact), \
+                     where g = {g}, wo = (x, y, z), c = max(z, 0), X = (alpha_x x)^2 + (alpha_y y)^2, Y = (alpha_x y)^2 + \
+                     (alpha_y x)^2"
+                )
+            }),
+        }
+    }
+
     /// `g_n` and `g_f` at every entry of an anisotropic table, in table order.
     ///
     /// # Errors
@@ -119,6 +142,20 @@ fn ggx_smith(wo: DVec3, alpha_x2: f64, alpha_y2: f64) -> [f64; 2] {
     [magnitude, fresnel]
 }
 
+fn ggx_smith_in_words() -> [String; 2] {
+    let least = ClosedForm::LEAST_M;
+    let m = |i: usize, [a, b]: [f64; 2]| {
+        format!("m{i} = max(c + sqrt(c^2 + {a} X + {b} Y), {least:e}), G{i} = 2 c / m{i}")
+    };
+    let (m1, m2) = (m(1, ClosedForm::M1), m(2, ClosedForm::M2));
+    let [a, b, c] = ClosedForm::MAGNITUDE;
+    let [d, e, f, g] = ClosedForm::FRESNEL;
+    [
+        format!("{a} G1 (1 - G1) + {b} G2 (1 - G2)^2 Y + {c} (alpha_x^2 + alpha_y^2), {m1}, {m2}"),
+        format!("v^4 ({d} + v G1 ({e} + (1 - G1) ({f} + {g} Y))), v = max(0, 1 - m1/2), {m1}"),
+    ]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -161,6 +198,25 @@ mod tests {
         ] {
             let [found_n, found_f] = ClosedForm::GgxSmith.at(wo, alpha_x, alpha_y);
             assert!((found_n - n).abs() < 1e-14 && (found_f - f).abs() < 1e-14, "{found_n} {found_f}");
+        }
+    }
+
+    #[test]
+    fn manifests_say_it_in_words() {
+        let [n, f] = ClosedForm::GgxSmith.reading();
+        for (words, g) in [
+            (
+                n,
+                "g = -0.471 G1 (1 - G1) + -0.924 G2 (1 - G2)^2 Y + 0.032 (alpha_x^2 + alpha_y^2), m1 = max(c + sqrt(c^2 + 7.5 X \
+                 + 0.035 Y), 1e-6), G1 = 2 c / m1, m2 = max(c + sqrt(c^2 + 0.5 X + 0.4 Y), 1e-6), G2 = 2 c / m2, wo",
+            ),
+            (
+                f,
+                "g = v^4 (0.869 + v G1 (0.118 + (1 - G1) (-0.293 + -1.372 Y))), v = max(0, 1 - m1/2), m1 = max(c + sqrt(c^2 + \
+                 7.5 X + 0.035 Y), 1e-6), G1 = 2 c / m1, wo",
+            ),
+        ] {
+            assert!(words.contains(g), "{words}");
         }
     }
 

@@ -124,7 +124,7 @@ fn lobes(plan: &Plan<'_>) -> [(&'static str, u64); 4] {
     [
         (ENTRIES, plan.owners().len()),
         (JOINT, spec.joint.steps * spec.joint.queries),
-        (CHANNELS, nodes + spec.channels.queries),
+        (CHANNELS, nodes + spec.channels.all_queries()),
         (MEASUREMENT, 2 * nodes + centres + spec.measure.queries),
     ]
     .map(|(stage, lobes)| (stage, lobes as u64))

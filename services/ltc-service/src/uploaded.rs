@@ -196,7 +196,7 @@ fn payload(table: &Table, cells: CellStats) -> Result<Vec<u8>, TableError> {
 }
 
 fn channels(closed_form: Option<ClosedForm>) -> Vec<ChannelInfo> {
-    [
+    let mut infos = [
         ("m", &[3, 3][..], "row-major matrix, cosine space to lobe; interpolate it, then invert"),
         ("magnitude", &[], "n = integral of rho cos at F = 1 (base colour 1)"),
         ("fresnel", &[], "f = integral of (1 - wo.wh)^5 rho cos; reflectance = F0 n + (F90 - F0) f"),
@@ -208,9 +208,12 @@ fn channels(closed_form: Option<ClosedForm>) -> Vec<ChannelInfo> {
         name: name.to_owned(),
         shape: shape.to_vec(),
         meaning: meaning.to_owned(),
-        closed_form: closed_form.filter(|_| ["magnitude", "fresnel"].contains(&name)),
-    })
-    .into()
+        closed_form: None,
+    });
+    if let Some(form) = closed_form {
+        form.describe(&mut infos);
+    }
+    infos.into()
 }
 
 fn now() -> String {

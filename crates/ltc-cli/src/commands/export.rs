@@ -18,7 +18,8 @@ pub struct Export {
     /// NAME, NAME@VERSION or a digest.
     #[arg(value_name = "TABLE")]
     table: String,
-    /// npz: NumPy arrays. ktx2: a texture, three RGBA groups (m00 m01 m02 m10 | m11 m12 m20 m21 | m22 magnitude fresnel 0).
+    /// npz: NumPy arrays. ktx2: a texture, three RGBA groups (m00 m01 m02 m10 | m11 m12 m20 m21 | m22 magnitude fresnel 0);
+    /// of a table with a closed form the third is m22, the remainders of magnitude and fresnel, and 1.
     /// dropin-dds: the two textures that engines ship, DIR/ltc_1.dds and DIR/ltc_2.dds. dropin-c, dropin-js: the same as source.
     #[arg(long, value_enum)]
     format: Format,
