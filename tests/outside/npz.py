@@ -20,6 +20,7 @@ QUERIES = 400
 TOLERANCE = 1e-6
 AXES = {
     "ggx-anisotropic": ["theta", "phi", "alpha", "lambda"],
+    "ggx-anisotropic-closed-form": ["theta", "phi", "alpha", "lambda"],
     "ggx-isotropic": ["theta", "alpha"],
     # Its α begins above 0.
     "charlie-sheen": ["theta", "alpha"],

@@ -9,10 +9,11 @@ use crate::step::Steps;
 use crate::workspace::{Profile, Workspace};
 
 /// The presets that are shipped.
-const PRESETS: [&str; 7] = [
+const PRESETS: [&str; 8] = [
     "ggx-isotropic",
     "ggx-isotropic-dropin",
     "ggx-anisotropic",
+    "ggx-anisotropic-closed-form",
     "beckmann-isotropic",
     "disney-diffuse",
     "oren-nayar",

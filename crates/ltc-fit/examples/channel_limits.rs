@@ -150,7 +150,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let tables = std::env::args().nth(1).unwrap_or_else(|| "tables".to_owned());
     let catalogue = Catalogue::read_folder(Path::new(&tables))?;
     worst(&catalogue, "ggx-isotropic", true)?;
-    for version in ["ggx-anisotropic@2", "ggx-anisotropic@3", "ggx-anisotropic"] {
+    for version in ["ggx-anisotropic@2", "ggx-anisotropic", "ggx-anisotropic-closed-form"] {
         worst(&catalogue, version, false)?;
     }
     for mapping in THETA_MAPPINGS {

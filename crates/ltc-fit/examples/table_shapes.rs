@@ -66,7 +66,7 @@ fn published() -> Vec<Axis> {
 }
 
 fn shapes() -> Vec<Shape> {
-    let of = |name, lengths: &[usize]| Shape { name, axes: resized("ggx-anisotropic", lengths) };
+    let of = |name, lengths: &[usize]| Shape { name, axes: resized("ggx-anisotropic-closed-form", lengths) };
     let square = |name, len| Shape { name, axes: resized("ggx-isotropic", &[len, len]) };
     vec![
         of("4⁴", &[4, 4, 4, 4]),
@@ -89,7 +89,7 @@ fn shapes() -> Vec<Shape> {
 
 fn outcome(shape: Shape) -> Result<Outcome, Box<dyn Error>> {
     let isotropic = shape.axes.len() == 2;
-    let mut spec = FitSpec::preset(if isotropic { "ggx-isotropic" } else { "ggx-anisotropic" })?;
+    let mut spec = FitSpec::preset(if isotropic { "ggx-isotropic" } else { "ggx-anisotropic-closed-form" })?;
     spec.axes = shape.axes;
     let start = Instant::now();
     let (table, errors) = fit(&spec, &silent)?;

@@ -359,7 +359,7 @@ mod tests {
 
     /// The preset with a few nodes.
     fn small() -> crate::FitSpec {
-        let mut spec = crate::FitSpec::preset("ggx-anisotropic").unwrap();
+        let mut spec = crate::FitSpec::preset("ggx-anisotropic-closed-form").unwrap();
         spec.axes.iter_mut().zip([5, 3, 5, 4]).for_each(|(axis, len)| axis.len = len);
         (spec.channels.samples, spec.channels.queries) = (512, 3000);
         spec

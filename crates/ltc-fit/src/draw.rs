@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn queries_over_the_axes_are_even_in_their_coordinates() {
-        let axes = crate::FitSpec::preset("ggx-anisotropic").unwrap().axes;
+        let axes = crate::FitSpec::preset("ggx-anisotropic-closed-form").unwrap().axes;
         let queries = over(&mut SplitMix64::new(1), 20_000, &axes);
         assert_eq!(queries.len(), 20_000);
         assert!(queries.iter().all(|q| q.validate().is_ok() && q.theta <= 89.51_f64.to_radians()));

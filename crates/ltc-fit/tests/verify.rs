@@ -9,7 +9,7 @@ use ltc_fit::{FitSpec, Lattice, fit, publish, refit_digest, silent, verify};
 use ltc_table::{CellStats, Manifest, Table, TableError, TableVersion, digest::digest};
 
 fn spec(isotropic: bool) -> FitSpec {
-    let name = if isotropic { "ggx-isotropic" } else { "ggx-anisotropic" };
+    let name = if isotropic { "ggx-isotropic" } else { "ggx-anisotropic-closed-form" };
     let mut spec = FitSpec::preset(name).unwrap();
     spec.name = "small".to_owned();
     let lengths: &[usize] = if isotropic { &[6, 5] } else { &[4, 3, 3, 3] };

@@ -2,11 +2,12 @@
 
 use crate::support::{command, ltc, names_in, text};
 
-const NAMES: [&str; 7] = [
+const NAMES: [&str; 8] = [
     "beckmann-isotropic",
     "charlie-sheen",
     "disney-diffuse",
     "ggx-anisotropic",
+    "ggx-anisotropic-closed-form",
     "ggx-isotropic",
     "ggx-isotropic-dropin",
     "oren-nayar",

@@ -16,10 +16,7 @@ const CHARLIE_ALPHA_MIN: f64 = 4e-3;
 /// more.
 pub(crate) fn preset(name: &str) -> Option<FitSpec> {
     if name == "beckmann-anisotropic" {
-        let mut base = FitSpec::preset("ggx-anisotropic").ok()?;
-        // GGX's closed form is not this one's; nodes towards grazing do what can be done without.
-        base.axes[0].mapping = Mapping::GrazingHalfTangent;
-        base.channels.closed_form = None;
+        let base = FitSpec::preset("ggx-anisotropic").ok()?;
         return Some(FitSpec { name: name.to_owned(), brdf: Beckmann.name().to_owned(), ..base });
     }
     let (brdf, len, alpha_min): (&dyn Brdf, usize, f64) = match name {
