@@ -20,6 +20,7 @@ impl List {
     pub fn run(self, tables: &Tables) -> Result<()> {
         let catalogue = tables.catalogue()?;
         let mut rows = Vec::new();
+        let width = catalogue.names().map(str::len).max().unwrap_or(0);
         for name in catalogue.names() {
             let versions: Vec<_> = catalogue.versions(name)?.map(|v| v.manifest()).collect();
             if let Some(latest) = versions.last() {
@@ -28,7 +29,7 @@ impl List {
                     let shape: Vec<String> = latest.axes.iter().map(|a| a.len.to_string()).collect();
                     let (shape, tv) = (shape.join("×"), latest.errors.standard_draw.tv_mean);
                     outln!(
-                        "{name:<20} latest {:<4} {shape:<10} mean TV {tv:.4}  {}",
+                        "{name:<width$} latest {:<4} {shape:<10} mean TV {tv:.4}  {}",
                         latest.version,
                         latest.digest
                     );
