@@ -1,8 +1,8 @@
 //! KTX2: the table as a texture file.
 //!
 //! Three RGBA groups hold the eleven channels: `m00 m01 m02 m10`, `m11 m12 m20 m21`, `m22 magnitude fresnel 0`. For a table with
-//! a [`ClosedForm`](crate::ClosedForm) the third is `m22 remainder(magnitude) remainder(fresnel) code`: the fourth number,
-//! [`ClosedForm::code`](crate::ClosedForm::code) (1), tells shaders to add the form's value at the query and to clamp both
+//! a [`ClosedForm`] the third is `m22 remainder(magnitude) remainder(fresnel) code`: the fourth number,
+//! [`ClosedForm::code`] (1), tells shaders to add the form's value at the query and to clamp both
 //! sums to [0, 1]. It is the same in all entries, so that interpolation leaves it as it is.
 //! - An isotropic table is a 2D array texture: x = α nodes, y = θ nodes, one layer a group.
 //! - An anisotropic table is a 3D texture: x = λ nodes, y = α nodes, z = φ nodes + `len(φ)` · (θ node + `len(θ)` · group).
