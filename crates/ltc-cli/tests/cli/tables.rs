@@ -44,7 +44,8 @@ fn tables_are_listed_and_inspected() {
 
 #[test]
 fn unknown_tables_are_named_with_those_there_are() {
-    let there_are = ["no table named \"nonesuch\"", "ggx-anisotropic, ggx-anisotropic-closed-form, ggx-isotropic"];
+    let there_are =
+        ["no table named \"nonesuch\"", "ggx-anisotropic, ggx-anisotropic-closed-form, ggx-isotropic"];
     ltc(&["inspect", "nonesuch"]).refused(&there_are);
     ltc(&["verify", "nonesuch"]).refused(&there_are);
     ltc(&["lookup", "--table", "nonesuch"]).refused(&there_are);
