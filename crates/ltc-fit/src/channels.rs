@@ -201,7 +201,7 @@ const PULL: f64 = 0.05;
 const FORM_PULL: f64 = 0.5;
 
 /// How far an entry of magnitude may go beyond the most there is, with a closed form: it stands between the form and what lookups
-/// come to, which is clamped. With none the largest error of magnitude of `ggx-anisotropic` doubles, and 0.02 is all that it takes.
+/// come to, which is clamped. With none the largest error of magnitude of `ggx-anisotropic-closed-form` doubles, and 0.02 is all that it takes.
 const FORM_SLACK: f64 = 0.02;
 
 /// Minimises `Σ |interpolation − value|ᵖ` by Newton's method: a step is 1/(p − 1) of the way to the weighted least squares

@@ -7,8 +7,6 @@
 //! It does so piece by piece ([`FitRun`]): between any two pieces its state can be written down, and the fit goes on from
 //! it in another process ([`checkpoint`]) to the very same table. Specifications are read from TOML ([`spec_file`]).
 
-use glam::DVec3;
-
 mod albedo;
 mod bfgs;
 pub mod brdf;
@@ -55,6 +53,7 @@ pub use fit::{fit, fit_with, publish, publish_with};
 pub use forecast::{Forecast, Outlook};
 pub use layout::{Layout, Reader};
 pub use lobe::Lobe;
+pub use ltc_table::direction;
 pub use objective::{Goal, Objective, total_variation, total_variation_gradient};
 pub use optimiser::Optimiser;
 pub use plan::{Cost, Limits, Plan};
@@ -66,9 +65,3 @@ pub use spec::FitSpec;
 pub use start::median_start;
 pub use symmetry::{Lattice, Node, Pattern, Tie};
 pub use verify::{Verification, refit_digest, refit_plan, verify, verify_with};
-
-/// The unit direction of polar angle `theta` and azimuth `phi`.
-pub fn direction(theta: f64, phi: f64) -> DVec3 {
-    let ((st, ct), (sp, cp)) = (theta.sin_cos(), phi.sin_cos());
-    DVec3::new(st * cp, st * sp, ct)
-}

@@ -47,6 +47,7 @@ impl Baked {
         Ok(Some(Self { slices: BakedSlices::bake(gpu, table, &widths)?, widths }))
     }
 
+    /// None for an isotropic material: it has a table of its own.
     fn slice(&self, alpha: Alpha) -> Option<u32> {
         self.widths.iter().position(|other| *other == alpha).map(|k| k as u32)
     }
@@ -128,7 +129,7 @@ fn surface_point(point: &SurfacePoint, baked: Option<&Baked>) -> ltc_shade_gpu::
         alpha_x: material.alpha.x() as f32,
         alpha_y: material.alpha.y() as f32,
         isotropic: material.is_isotropic(),
-        slice: baked.and_then(|baked| baked.slice(material.alpha)).filter(|_| !material.is_isotropic()),
+        slice: baked.and_then(|baked| baked.slice(material.alpha)),
         f0: material.f0.as_vec3(),
         f90: material.f90 as f32,
         albedo: material.albedo.as_vec3(),

@@ -4,8 +4,7 @@ use core::f64::consts::FRAC_PI_2;
 
 use glam::DMat3;
 use ltc_core::{Alpha, Matrix as _};
-use ltc_table::lookup::{Corner, corners};
-use ltc_table::{Kind, Precision, Query, Table, TableError, ktx2};
+use ltc_table::{ClosedForm, Kind, Precision, Query, Table, TableError, ktx2};
 
 use crate::layout::AxesUniform;
 use crate::table_textures::{Storage, View, check_extent, create, precision};
@@ -94,23 +93,13 @@ fn slice(table: &Table, alpha: Alpha) -> Result<Vec<[f64; 12]>, TableError> {
     let views =
         in_domain(theta.nodes()).flat_map(|theta| in_domain(phi.nodes()).map(move |phi| (theta, phi)));
     let entry = |(theta, phi)| {
-        let found = table.lookup(&Query { theta, phi, alpha_x, alpha_y })?;
+        let query = Query { theta, phi, alpha_x, alpha_y };
+        let found = table.lookup(&query)?;
         let [a, b, c, d, e, f, g, h, i] = found.lobes[0].m;
-        let at = [theta, phi, alpha_x, alpha_y / alpha_x];
-        let [n, f_term, code] = channels(table, at).unwrap_or([found.magnitude, found.fresnel, 0.0]);
-        Ok([a, b, c, d, e, f, g, h, i, n, f_term, code])
+        let [n, f_term] = table.lookup_remainders(&query)?.unwrap_or([found.magnitude, found.fresnel]);
+        Ok([a, b, c, d, e, f, g, h, i, n, f_term, table.closed_form().map_or(0.0, ClosedForm::code)])
     };
     views.map(entry).collect()
-}
-
-/// What a closed form leaves of both channels, and its code.
-fn channels(table: &Table, at: [f64; 4]) -> Option<[f64; 3]> {
-    let (form, remainders) = (table.closed_form()?, table.remainders()?);
-    let mut sum = [0.0; 2];
-    for Corner { index, weight } in corners(table.axes(), at) {
-        sum = [0, 1].map(|k| sum[k] + weight * remainders[index][k]);
-    }
-    Some([sum[0], sum[1], form.code()])
 }
 
 /// Groups of four channels one after the other, slices within each, in the layout of a table's texels.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::{Axis, ChannelInfo, TableError};
+use crate::{Axis, ChannelInfo, TableError, direction};
 
 /// A formula for the parts of magnitude and Fresnel term that change too fast between entries to be interpolated.
 ///
@@ -119,12 +119,6 @@ impl ClosedForm {
             Self::GgxSmith => ggx_smith(wo, alpha_x * alpha_x, alpha_y * alpha_y),
         }
     }
-}
-
-/// The unit vector of polar angles.
-pub(crate) fn direction(theta: f64, phi: f64) -> DVec3 {
-    let ((sin, cos), (y, x)) = (theta.sin_cos(), phi.sin_cos());
-    DVec3::new(sin * x, sin * y, cos)
 }
 
 fn ggx_smith(wo: DVec3, alpha_x2: f64, alpha_y2: f64) -> [f64; 2] {

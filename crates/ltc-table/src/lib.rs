@@ -38,7 +38,7 @@ pub use error::TableError;
 pub use lookup::{Lobe, Lookup};
 pub use manifest::{BrdfInfo, ChannelInfo, DrawErrors, Errors, Floors, GridErrors, Manifest};
 pub use precision::Precision;
-pub use query::{Folded, Query};
+pub use query::{Folded, Query, direction};
 pub use shelf::{Added, add_version};
 pub use table::{CellStats, Kind, Table};
 pub use version::{MANIFEST_FILE, PAYLOAD_FILE, TableVersion, check_name};

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 use ltc_core::{Alpha, InputError, check_range};
 use serde::{Deserialize, Serialize};
 
@@ -89,20 +89,21 @@ impl Folded {
     /// The signed permutation that leads from the folded quadrant back to the query's.
     fn unfolding(&self) -> DMat3 {
         let sign = |flip: bool| if flip { -1.0 } else { 1.0 };
-        let mirror = DMat3::from_diagonal(glam::DVec3::new(sign(self.flip_x), sign(self.flip_y), 1.0));
+        let mirror = DMat3::from_diagonal(DVec3::new(sign(self.flip_x), sign(self.flip_y), 1.0));
         let exchange = DMat3::from_cols_array(&[0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
         if self.swap { mirror * exchange } else { mirror }
     }
 }
 
+/// The unit direction of polar angle `theta` and azimuth `phi`.
+pub fn direction(theta: f64, phi: f64) -> DVec3 {
+    let ((st, ct), (sp, cp)) = (theta.sin_cos(), phi.sin_cos());
+    DVec3::new(st * cp, st * sp, ct)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
-
-    fn direction(theta: f64, phi: f64) -> DVec3 {
-        DVec3::new(theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos())
-    }
 
     #[test]
     fn unfolding_the_folded_view_gives_the_view() {

@@ -3,10 +3,7 @@
 use glam::DMat3;
 use ltc_core::{Ltc, Matrix};
 
-use crate::{
-    Axis, ClosedForm, Folded, Lobe, Lookup, Quantity, Query, TableError, closed_form::direction,
-    lookup::Corner,
-};
+use crate::{Axis, ClosedForm, Folded, Lobe, Lookup, Quantity, Query, TableError, direction, lookup::Corner};
 
 /// Error statistics of each entry, in table order.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -144,6 +141,15 @@ impl Table {
         self.remainders.as_ref().map(|r| &r.values[..])
     }
 
+    /// What the closed form leaves of magnitude and Fresnel term at a query, interpolated. `None` without a closed form.
+    ///
+    /// # Errors
+    /// [`TableError::Input`] for an invalid query.
+    pub fn lookup_remainders(&self, query: &Query) -> Result<Option<[f64; 2]>, TableError> {
+        let folded = query.fold()?;
+        Ok(self.remainders.as_ref().map(|r| r.interpolate(&self.axes, &folded, [0.0; 2])))
+    }
+
     /// Statistics of each entry; arrays may be empty.
     pub fn cells(&self) -> &CellStats {
         &self.cells
@@ -193,7 +199,7 @@ impl Table {
                 let values = [folded.theta, folded.phi, folded.alpha, folded.lambda];
                 let (m, mut magnitude, mut fresnel) = self.interpolate(values);
                 if let Some(remainders) = &self.remainders {
-                    [magnitude, fresnel] = remainders.interpolate(&self.axes, &folded);
+                    [magnitude, fresnel] = remainders.lookup(&self.axes, &folded);
                 }
                 Ok(Lookup::single(folded.unfold(m), magnitude, fresnel))
             }
@@ -228,16 +234,22 @@ impl Table {
 
 impl Remainders {
     /// Magnitude and Fresnel term of a query.
-    fn interpolate(&self, axes: &[Axis], query: &Folded) -> [f64; 2] {
+    fn lookup(&self, axes: &[Axis], query: &Folded) -> [f64; 2] {
         let Folded { theta, phi, alpha, lambda, .. } = *query;
         // The form is the same for the folded query, and so for all that fold to it, to the last bit.
-        let mut sum = self.form.at(direction(theta, phi), alpha, alpha * lambda);
+        let form = self.form.at(direction(theta, phi), alpha, alpha * lambda);
+        self.interpolate(axes, query, form).map(|x| x.clamp(0.0, 1.0))
+    }
+
+    /// `sum` and what the form leaves of both.
+    fn interpolate(&self, axes: &[Axis], query: &Folded, mut sum: [f64; 2]) -> [f64; 2] {
+        let Folded { theta, phi, alpha, lambda, .. } = *query;
         for Corner { index, weight } in crate::lookup::corners(axes, [theta, phi, alpha, lambda]) {
             for (sum, remainder) in sum.iter_mut().zip(self.values[index]) {
                 *sum += weight * remainder;
             }
         }
-        sum.map(|x| x.clamp(0.0, 1.0))
+        sum
     }
 }
 
