@@ -79,7 +79,7 @@ impl Forward {
     /// # Errors
     /// [`GpuError::Device`].
     pub fn with(gpu: &Gpu, options: ShadingOptions) -> Result<Self, GpuError> {
-        let module = compile(gpu, Program::Forward(options.shading(gpu)))?;
+        let module = compile(gpu, Program::Forward(gpu.filtering(), options.extras()))?;
         let tables = TableBindings::new(gpu, options.extras())?;
         gpu.checked(|| {
             let inputs = input_layout(gpu.device());

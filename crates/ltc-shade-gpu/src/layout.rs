@@ -63,18 +63,7 @@ pub(crate) struct LookupLayout {
     pub wo: [f32; 3],
     pub alpha_x: f32,
     pub alpha_y: f32,
-    pub isotropic: u32,
-    pub unused: [u32; 2],
-}
-
-/// `BakedJob`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct BakedLayout {
-    pub wo: [f32; 3],
-    pub alpha_x: f32,
-    pub alpha_y: f32,
-    pub slice: u32,
+    pub table: u32,
     pub unused: [u32; 2],
 }
 
@@ -142,7 +131,6 @@ const _: () = {
     assert!(size_of::<AxesUniform>() == 64);
     assert!(size_of::<IntegrateLayout>() == 128);
     assert!(size_of::<LookupLayout>() == 32);
-    assert!(size_of::<BakedLayout>() == 32);
     assert!(size_of::<SurfaceLayout>() == 96);
     assert!(size_of::<LightLayout>() == 80);
 };

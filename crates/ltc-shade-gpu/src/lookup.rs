@@ -1,9 +1,10 @@
 //! Batches of table lookups.
 
 use crate::compute::{Batch, Kernel, compile};
-use crate::layout::{BakedLayout, LookupLayout};
-use crate::modules::Program;
-use crate::table_bindings::{Extras, TableBindings};
+use crate::constants::{ANISOTROPIC_TABLE, FIRST_SLICE, ISOTROPIC_TABLE};
+use crate::layout::LookupLayout;
+use crate::modules::{Extras, Program};
+use crate::table_bindings::TableBindings;
 use crate::{BakedSlices, Gpu, GpuError, TableTextures, Tables};
 use ltc_table::{Kind, Query};
 
@@ -39,7 +40,7 @@ impl Lookups {
     /// # Errors
     /// [`GpuError::Device`].
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let module = compile(gpu, Program::Lookup(gpu.filtering()))?;
+        let module = compile(gpu, Program::Lookup(gpu.filtering(), Extras::default()))?;
         let tables = TableBindings::new(gpu, Extras::default())?;
         Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(tables.layout()), 1)?, tables })
     }
@@ -94,8 +95,9 @@ impl BakedLookups {
     /// # Errors
     /// [`GpuError::Device`].
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let module = compile(gpu, Program::LookupBaked(gpu.filtering()))?;
-        let tables = TableBindings::new(gpu, Extras { baked: true, ..Extras::default() })?;
+        let extras = Extras { baked: true, ..Extras::default() };
+        let module = compile(gpu, Program::Lookup(gpu.filtering(), extras))?;
+        let tables = TableBindings::new(gpu, extras)?;
         Ok(Self { kernel: Kernel::new(gpu, &module, "main", Some(tables.layout()), 1)?, tables })
     }
 
@@ -116,9 +118,9 @@ impl BakedLookups {
             let [alpha_x, alpha_y] = slices.widths(slice).ok_or(wrong)?;
             let query = Query { theta, phi, alpha_x: f64::from(alpha_x), alpha_y: f64::from(alpha_y) };
             query.validate().map_err(GpuError::input("query", index))?;
-            Ok(BakedLayout { wo: wo(&query), alpha_x, alpha_y, slice, unused: [0; 2] })
+            Ok(layout(&query, [alpha_x, alpha_y], FIRST_SLICE + slice))
         };
-        let jobs = queries.iter().enumerate().map(job).collect::<Result<Vec<_>, GpuError>>()?;
+        let jobs = queries.iter().enumerate().map(job).collect::<Result<Vec<LookupLayout>, GpuError>>()?;
         let bound = self.tables.bind(gpu, Tables { baked: Some(slices), ..Tables::default() }, None)?;
         in_chunks(gpu, &self.kernel, &jobs, &bound)
     }
@@ -154,19 +156,18 @@ fn encode(kind: Kind, index: usize, query: &Query) -> Result<LookupLayout, GpuEr
         let Query { alpha_x, alpha_y, .. } = *query;
         return Err(GpuError::NotIsotropic { item: "query", index, alpha_x, alpha_y });
     }
-    Ok(LookupLayout {
-        wo: wo(query),
-        alpha_x: alpha.x() as f32,
-        alpha_y: alpha.y() as f32,
-        isotropic: u32::from(kind == Kind::Isotropic),
-        unused: [0; 2],
-    })
+    let table = match kind {
+        Kind::Isotropic => ISOTROPIC_TABLE,
+        Kind::Anisotropic => ANISOTROPIC_TABLE,
+    };
+    Ok(layout(query, [alpha.x() as f32, alpha.y() as f32], table))
 }
 
-fn wo(query: &Query) -> [f32; 3] {
+fn layout(query: &Query, [alpha_x, alpha_y]: [f32; 2], table: u32) -> LookupLayout {
     let sin = query.theta.sin().max(SMALLEST_SINE);
     let (sin_phi, cos_phi) = query.phi.sin_cos();
-    [sin * cos_phi, sin * sin_phi, query.theta.cos().max(0.0)].map(|x| x as f32)
+    let wo = [sin * cos_phi, sin * sin_phi, query.theta.cos().max(0.0)].map(|x| x as f32);
+    LookupLayout { wo, alpha_x, alpha_y, table, unused: [0; 2] }
 }
 
 fn decode(floats: &[f32; FLOATS]) -> LookupResult {

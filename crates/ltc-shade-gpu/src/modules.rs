@@ -66,9 +66,10 @@ pub const MODULES: &[Module] = &[
     module!(true, "fold", ["math", "table"]),
     module!(true, "anisotropic", ["table", "fold", "closed_form"]),
     module!(true, "baked", ["table", "fold", "closed_form"]),
-    module!(true, "fetch_exact_isotropic", ["isotropic"]),
+    module!(true, "fetch_exact_layer", []),
+    module!(true, "fetch_exact_isotropic", ["isotropic", "fetch_exact_layer"]),
     module!(true, "fetch_exact_anisotropic", ["anisotropic"]),
-    module!(true, "fetch_exact_baked", ["baked"]),
+    module!(true, "fetch_exact_baked", ["baked", "fetch_exact_layer"]),
     module!(true, "fetch_hardware_isotropic", ["isotropic"]),
     module!(true, "fetch_hardware_anisotropic", ["anisotropic"]),
     module!(true, "fetch_hardware_baked", ["baked"]),
@@ -100,9 +101,9 @@ pub const MODULES: &[Module] = &[
     module!(false, "light_textures", ["lights", "textured"]),
     module!(false, "integrate_main", ["lights"]),
     module!(false, "integrate_textured_main", ["light_textures"]),
-    module!(false, "lookup_main", ["table"]),
-    module!(false, "lookup_baked_main", ["table"]),
-    module!(false, "shade", ["lights", "fresnel", "table", "table_constants"]),
+    module!(false, "table_choice", ["table", "table_constants"]),
+    module!(false, "lookup_main", ["table_choice"]),
+    module!(false, "shade", ["lights", "fresnel", "table_choice"]),
     module!(false, "shade_main", ["shade"]),
     module!(false, "forward_main", ["shade"]),
 ];
@@ -110,14 +111,12 @@ pub const MODULES: &[Module] = &[
 /// What the programs of this crate are composed with.
 const OWN_SYMBOLS: &[&str] = &["surface_horizon", "cosine_horizon", "two_sided"];
 
-/// What a shading program is composed of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shading {
-    /// How tables are interpolated.
-    pub filtering: Filtering,
-    /// Whether lights with textures are among the lights.
+/// What a program has beside the two tables and lights of one colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extras {
+    /// Lights with textures among the lights.
     pub textured: bool,
-    /// Whether points may look into baked slices.
+    /// Baked slices to look into.
     pub baked: bool,
 }
 
@@ -129,13 +128,11 @@ pub enum Program {
     /// Textured lights under lobes: entry point `main`.
     IntegrateTextured,
     /// A batch of lookups: entry point `main`.
-    Lookup(Filtering),
-    /// A batch of lookups in baked slices: entry point `main`.
-    LookupBaked(Filtering),
+    Lookup(Filtering, Extras),
     /// Deferred shading: entry point `main`.
-    Shade(Shading),
+    Shade(Filtering, Extras),
     /// Forward shading: entry points `vertex_main` and `fragment_main`.
-    Forward(Shading),
+    Forward(Filtering, Extras),
 }
 
 impl Program {
@@ -143,10 +140,12 @@ impl Program {
     pub fn all() -> Vec<Self> {
         let mut all = vec![Self::Integrate, Self::IntegrateTextured];
         for filtering in [Filtering::Exact, Filtering::Hardware, Filtering::Buffer] {
-            all.extend([Self::Lookup(filtering), Self::LookupBaked(filtering)]);
-            for choice in 0..4 {
-                let shading = Shading { filtering, textured: choice & 1 != 0, baked: choice & 2 != 0 };
-                all.extend([Self::Shade(shading), Self::Forward(shading)]);
+            for baked in [false, true] {
+                all.push(Self::Lookup(filtering, Extras { textured: false, baked }));
+                for textured in [false, true] {
+                    let extras = Extras { textured, baked };
+                    all.extend([Self::Shade(filtering, extras), Self::Forward(filtering, extras)]);
+                }
             }
         }
         all
@@ -154,37 +153,34 @@ impl Program {
 
     /// The modules to begin with; the rest follows from what they need.
     pub fn roots(self) -> Vec<&'static str> {
-        let (main, shading) = match self {
+        let (main, filtering, extras) = match self {
             Self::Integrate => return vec!["integrate_main"],
             Self::IntegrateTextured => return vec!["integrate_textured_main"],
-            Self::Lookup(filtering) => ("lookup_main", Shading { filtering, textured: false, baked: false }),
-            Self::LookupBaked(filtering) => {
-                ("lookup_baked_main", Shading { filtering, textured: false, baked: true })
-            }
-            Self::Shade(shading) => ("shade_main", shading),
-            Self::Forward(shading) => ("forward_main", shading),
+            Self::Lookup(filtering, extras) => ("lookup_main", filtering, extras),
+            Self::Shade(filtering, extras) => ("shade_main", filtering, extras),
+            Self::Forward(filtering, extras) => ("forward_main", filtering, extras),
         };
-        let (tables, baked) = match shading.filtering {
+        let (tables, baked) = match filtering {
             Filtering::Exact => ("tables_exact", "baked_exact"),
             Filtering::Hardware => ("tables_hardware", "baked_hardware"),
             Filtering::Buffer => ("tables_buffer", "baked_buffer"),
         };
-        let mut roots = vec![if shading.baked { baked } else { tables }];
-        roots.extend(shading.textured.then_some("light_textures"));
+        let mut roots = vec![if extras.baked { baked } else { tables }];
+        roots.extend(extras.textured.then_some("light_textures"));
         roots.push(main);
         roots
     }
 
     /// The whole WGSL text.
     pub fn source(self) -> String {
-        let (textured, baked) = match self {
-            Self::Shade(shading) | Self::Forward(shading) => (shading.textured, shading.baked),
-            Self::IntegrateTextured => (true, false),
-            Self::Integrate | Self::Lookup(_) | Self::LookupBaked(_) => (false, false),
+        let extras = match self {
+            Self::Lookup(_, extras) | Self::Shade(_, extras) | Self::Forward(_, extras) => extras,
+            Self::IntegrateTextured => Extras { textured: true, baked: false },
+            Self::Integrate => Extras::default(),
         };
         let mut symbols = OWN_SYMBOLS.to_vec();
-        symbols.extend(textured.then_some("light_textures"));
-        symbols.extend(baked.then_some("baked"));
+        symbols.extend(extras.textured.then_some("light_textures"));
+        symbols.extend(extras.baked.then_some("baked"));
         compose(&self.roots(), &symbols)
     }
 }
@@ -284,7 +280,7 @@ mod tests {
         for program in Program::all() {
             let module = validate(&program.source()).unwrap_or_else(|e| panic!("{program:?}: {e}"));
             let names: Vec<_> = module.entry_points.iter().map(|e| e.name.as_str()).collect();
-            let forward = matches!(program, Program::Forward(_));
+            let forward = matches!(program, Program::Forward(..));
             let expected = if forward { vec!["vertex_main", "fragment_main"] } else { vec!["main"] };
             assert_eq!(names, expected, "{program:?}");
         }

@@ -2,8 +2,8 @@
 
 use crate::compute::{Batch, Kernel, compile};
 use crate::light::EncodedLights;
-use crate::modules::{Program, Shading};
-use crate::table_bindings::{Extras, TableBindings};
+use crate::modules::{Extras, Program};
+use crate::table_bindings::TableBindings;
 use crate::{AreaLight, Gpu, GpuError, LightTextures, SurfacePoint, Tables};
 
 /// Points that go to the device at once: 12 MiB of G-buffer.
@@ -36,11 +36,6 @@ impl ShadingOptions {
     pub(crate) fn extras(&self) -> Extras {
         Extras { textured: self.textures.is_some(), baked: self.baked }
     }
-
-    pub(crate) fn shading(&self, gpu: &Gpu) -> Shading {
-        let Extras { textured, baked } = self.extras();
-        Shading { filtering: gpu.filtering(), textured, baked }
-    }
 }
 
 impl Shader {
@@ -57,7 +52,7 @@ impl Shader {
     /// # Errors
     /// [`GpuError::Device`].
     pub fn with(gpu: &Gpu, options: ShadingOptions) -> Result<Self, GpuError> {
-        let module = compile(gpu, Program::Shade(options.shading(gpu)))?;
+        let module = compile(gpu, Program::Shade(gpu.filtering(), options.extras()))?;
         let tables = TableBindings::new(gpu, options.extras())?;
         let kernel = Kernel::new(gpu, &module, "main", Some(tables.layout()), 3)?;
         Ok(Self { kernel, tables, textures: options.textures })

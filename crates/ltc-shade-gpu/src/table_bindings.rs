@@ -6,17 +6,9 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
 use crate::layout::AxesUniform;
+use crate::modules::Extras;
 use crate::table_textures::{Storage, view_dimension};
 use crate::{Filtering, Gpu, GpuError, LightTextures, Tables};
-
-/// What a program binds beside the two tables.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Extras {
-    /// `light_textures.wgsl`.
-    pub textured: bool,
-    /// `baked_exact.wgsl`, `baked_hardware.wgsl` or `baked_buffer.wgsl`.
-    pub baked: bool,
-}
 
 /// The layout of group 0, as `tables_exact.wgsl` and its like have it.
 #[derive(Debug)]

@@ -1,12 +1,4 @@
-// Slices interpolated by hand, in full f32: on every device. No bindings: the texture is a parameter. Needs: table, baked.
-
-// Between four neighbours of one layer.
-fn ltc_fetch_four_baked(texture: texture_2d_array<f32>, at: vec2u, layer: u32, weights: vec4f) -> vec4f {
-    return weights.x * textureLoad(texture, at, layer, 0)
-        + weights.y * textureLoad(texture, at + vec2u(1u, 0u), layer, 0)
-        + weights.z * textureLoad(texture, at + vec2u(0u, 1u), layer, 0)
-        + weights.w * textureLoad(texture, at + vec2u(1u, 1u), layer, 0);
-}
+// Slices interpolated by hand, in full f32: on every device. No bindings: the texture is a parameter. Needs: table, baked, fetch_exact_layer.
 
 // The table's answer for the unit vector `wo`, in the shading frame, and the widths that the slice was baked for.
 fn ltc_lookup_baked(
@@ -22,9 +14,9 @@ fn ltc_lookup_baked(
     let at = vec2u(place.phi.cell, place.theta.cell);
     let weights = ltc_weights(place.phi, place.theta);
     var texels = LtcTexels(
-        ltc_fetch_four_baked(texture, at, slice, weights),
-        ltc_fetch_four_baked(texture, at, slice + slices, weights),
-        ltc_fetch_four_baked(texture, at, slice + 2u * slices, weights),
+        ltc_fetch_four_layer(texture, at, slice, weights),
+        ltc_fetch_four_layer(texture, at, slice + slices, weights),
+        ltc_fetch_four_layer(texture, at, slice + 2u * slices, weights),
     );
     if !ltc_regular(texels) {
         let node = vec2u(ltc_nearest_node(place.phi), ltc_nearest_node(place.theta));

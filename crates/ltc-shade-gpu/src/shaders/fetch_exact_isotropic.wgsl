@@ -1,22 +1,14 @@
 // The isotropic table interpolated by hand, in full f32: on every device. No bindings: the texture is a parameter.
-// Needs: table, isotropic.
+// Needs: table, isotropic, fetch_exact_layer.
 
 fn ltc_fetch_isotropic(texture: texture_2d_array<f32>, place: LtcIsotropicPlace) -> LtcTexels {
     let at = vec2u(place.alpha.cell, place.theta.cell);
     let weights = ltc_weights(place.alpha, place.theta);
     return LtcTexels(
-        ltc_fetch_four_isotropic(texture, at, 0, weights),
-        ltc_fetch_four_isotropic(texture, at, 1, weights),
-        ltc_fetch_four_isotropic(texture, at, 2, weights),
+        ltc_fetch_four_layer(texture, at, 0u, weights),
+        ltc_fetch_four_layer(texture, at, 1u, weights),
+        ltc_fetch_four_layer(texture, at, 2u, weights),
     );
-}
-
-// Between four neighbours of one layer.
-fn ltc_fetch_four_isotropic(texture: texture_2d_array<f32>, at: vec2u, layer: i32, weights: vec4f) -> vec4f {
-    return weights.x * textureLoad(texture, at, layer, 0)
-        + weights.y * textureLoad(texture, at + vec2u(1u, 0u), layer, 0)
-        + weights.z * textureLoad(texture, at + vec2u(0u, 1u), layer, 0)
-        + weights.w * textureLoad(texture, at + vec2u(1u, 1u), layer, 0);
 }
 
 // The nearest entry alone.

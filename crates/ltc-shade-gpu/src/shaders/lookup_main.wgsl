@@ -1,10 +1,11 @@
-// Entry point: a batch of lookups. Needs: tables_exact or tables_hardware.
+// Entry point: a batch of lookups. Needs: table_choice.
 
 struct LookupJob {
     wo: vec3f,
     alpha_x: f32,
     alpha_y: f32,
-    isotropic: u32,
+    // As in a surface point.
+    table: u32,
     unused_0: u32,
     unused_1: u32,
 }
@@ -19,12 +20,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let job = jobs[id.x];
-    var found: LtcLookup;
-    if job.isotropic != 0u {
-        found = lookup_isotropic(job.wo, job.alpha_x);
-    } else {
-        found = lookup_anisotropic(job.wo, job.alpha_x, job.alpha_y);
-    }
+    let found = look_up(job.table, job.wo, job.alpha_x, job.alpha_y);
     // Row-major, then the two channels: the layout of a texel triple.
     let m = found.m;
     results[3u * id.x] = vec4f(m[0].x, m[1].x, m[2].x, m[0].y);

@@ -1,6 +1,5 @@
 // A surface point under all lights: one lookup, shared by deferred and forward shading. Whoever includes it binds
-// `lights` and `light_vertices`. Needs: frame, lights, fresnel, tables_exact, tables_hardware or tables_buffer; with baked slices
-// baked_exact, baked_hardware or baked_buffer.
+// `lights` and `light_vertices`. Needs: frame, lights, fresnel, table_choice.
 
 struct SurfacePoint {
     position: vec3f,
@@ -29,16 +28,7 @@ fn view_in_frame(frame: LtcFrame, wo: vec3f) -> vec3f {
 fn shade(point: SurfacePoint, light_count: u32) -> vec3f {
     let frame = ltc_frame(point.normal, point.tangent);
     let wo = view_in_frame(frame, point.wo);
-    var found: LtcLookup;
-    if point.table == TABLE_ISOTROPIC {
-        found = lookup_isotropic(wo, point.alpha_x);
-//#if baked
-    } else if point.table >= TABLE_FIRST_SLICE {
-        found = lookup_baked(wo, point.alpha_x, point.alpha_y, point.table - TABLE_FIRST_SLICE);
-//#endif
-    } else {
-        found = lookup_anisotropic(wo, point.alpha_x, point.alpha_y);
-    }
+    let found = look_up(point.table, wo, point.alpha_x, point.alpha_y);
     let specular_lobe = ltc_lobe(found.m);
     let diffuse_lobe = ltc_cosine();
     let specular = ltc_reflectance(point.f0, point.f90, found.magnitude, found.fresnel);

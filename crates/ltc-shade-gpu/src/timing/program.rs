@@ -4,7 +4,8 @@ use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
 use super::grid::{TARGET, no_target};
 use super::{PixelGrid, Resource};
-use crate::table_bindings::{Extras, TableBindings};
+use crate::modules::Extras;
+use crate::table_bindings::TableBindings;
 use crate::{Gpu, GpuError, Tables};
 
 /// Where a program runs.

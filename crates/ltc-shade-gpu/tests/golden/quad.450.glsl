@@ -269,7 +269,7 @@ LtcLookup ltc_isotropic_decode(LtcTexels texels, vec3 wo) {
 }
 
 // Between four neighbours of one layer.
-vec4 ltc_fetch_four_isotropic(sampler2DArray texture_, uvec2 at, int layer, vec4 weights) {
+vec4 ltc_fetch_four_layer(sampler2DArray texture_, uvec2 at, uint layer, vec4 weights) {
     vec4 _e6 = texelFetch(texture_, ivec3(at, layer), 0);
     vec4 _e14 = texelFetch(texture_, ivec3((at + uvec2(1u, 0u)), layer), 0);
     vec4 _e23 = texelFetch(texture_, ivec3((at + uvec2(0u, 1u)), layer), 0);
@@ -280,9 +280,9 @@ vec4 ltc_fetch_four_isotropic(sampler2DArray texture_, uvec2 at, int layer, vec4
 LtcTexels ltc_fetch_isotropic(sampler2DArray texture_1, LtcIsotropicPlace place) {
     uvec2 at = uvec2(place.alpha.cell, place.theta.cell);
     vec4 _e9 = ltc_weights(place.alpha, place.theta);
-    vec4 _e11 = ltc_fetch_four_isotropic(texture_1, at, 0, _e9);
-    vec4 _e13 = ltc_fetch_four_isotropic(texture_1, at, 1, _e9);
-    vec4 _e15 = ltc_fetch_four_isotropic(texture_1, at, 2, _e9);
+    vec4 _e11 = ltc_fetch_four_layer(texture_1, at, 0u, _e9);
+    vec4 _e13 = ltc_fetch_four_layer(texture_1, at, 1u, _e9);
+    vec4 _e15 = ltc_fetch_four_layer(texture_1, at, 2u, _e9);
     return LtcTexels(_e11, _e13, _e15);
 }
 
