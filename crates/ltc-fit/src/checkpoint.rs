@@ -4,6 +4,7 @@
 //! folder beside the output ([`Folder`]) is one such store; a service may keep states elsewhere.
 
 use std::fs;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -207,9 +208,14 @@ impl Folder {
     fn file(&self) -> PathBuf {
         self.own.join("state")
     }
+
+    fn write(&self, bytes: &[u8]) -> Result<(), TableError> {
+        fs::create_dir_all(&self.own).map_err(|e| io(&self.own, e))?;
+        write_atomically(&self.file(), bytes)
+    }
 }
 
-fn io(path: &Path, source: std::io::Error) -> TableError {
+fn io(path: &Path, source: io::Error) -> TableError {
     TableError::Io { path: path.display().to_string(), source }
 }
 
@@ -217,19 +223,34 @@ impl Store for Folder {
     fn load(&self) -> Result<Option<Vec<u8>>, TableError> {
         match fs::read(self.file()) {
             Ok(bytes) => Ok(Some(bytes)),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             Err(error) => Err(io(&self.file(), error)),
         }
     }
 
     fn save(&self, bytes: &[u8]) -> Result<(), TableError> {
-        fs::create_dir_all(&self.own).map_err(|e| io(&self.own, e))?;
-        write_atomically(&self.file(), bytes)
+        /// More fits of one specification than anybody lets end at once.
+        const TRIES: usize = 32;
+        let mut saved = self.write(bytes);
+        for _ in 1..TRIES {
+            match saved {
+                // Another fit of this specification has ended and taken the folder away meanwhile: it was there, but is
+                // no folder when looked at again, or what was to go into it finds it gone.
+                Err(TableError::Io { source, .. })
+                    if matches!(source.kind(), ErrorKind::NotFound | ErrorKind::AlreadyExists) => {}
+                _ => break,
+            }
+            saved = self.write(bytes);
+        }
+        saved
     }
 
     fn clear(&self) -> Result<(), TableError> {
         match fs::remove_dir_all(&self.own) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(io(&self.own, error)),
+            // What another fit of this specification has put there meanwhile is that one's to clear.
+            Err(e) if !matches!(e.kind(), ErrorKind::NotFound | ErrorKind::DirectoryNotEmpty) => {
+                return Err(io(&self.own, e));
+            }
             _ => {}
         }
         // Other fits may have theirs there: only an empty folder goes.

@@ -304,6 +304,26 @@ fn a_folder_is_made_when_needed_and_cleared_without_a_trace() {
 }
 
 #[test]
+fn fits_of_one_specification_share_a_folder_and_do_not_meet() {
+    let output = tempfile::tempdir().unwrap();
+    let store = Folder::new(output.path(), &plan());
+    let content = vec![7; 20_000];
+    let one_after_the_other = || {
+        for _ in 0..300 {
+            store.save(&content).unwrap();
+            assert!(store.load().unwrap().is_none_or(|found| found == content));
+            store.clear().unwrap();
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(one_after_the_other);
+        }
+    });
+    assert_eq!(std::fs::read_dir(output.path()).unwrap().count(), 0);
+}
+
+#[test]
 fn a_store_that_fails_does_not_stop_the_fit() {
     let output = tempfile::tempdir().unwrap();
     let store = Folder::new(output.path(), &plan());
