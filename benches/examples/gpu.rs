@@ -1,11 +1,14 @@
 //! What the graphics device at hand does: `cargo run --release -p ltc-benches --example gpu [--quick]` prints every figure and ratio.
 //! `ltc bench` measures the same, and keeps it.
 
-use ltc_benches::study::{Interval, Plan, Step, run_on_device};
+use ltc_benches::study::{Interval, Plan, Step, run, session};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let plan = Plan { quick: std::env::args().any(|arg| arg == "--quick"), ..Plan::default() };
-    let run = run_on_device(&plan, &ltc_tables::shipped()?, &|step: Step<'_>| eprintln!("{}", step.stage))?;
+    let quick = std::env::args().any(|arg| arg == "--quick");
+    let (plan, tables) = (Plan { quick, device_only: true, ..Plan::default() }, ltc_tables::shipped()?);
+    // All in one process: `ltc bench` has one for each session.
+    let again = || session(&plan, &tables);
+    let run = run(&plan, &tables, &again, &|step: Step<'_>| eprintln!("{}", step.stage))?;
     let device = run.machine.gpu.unwrap_or_default();
     println!("{device}; {}", run.machine.gpu_clock.unwrap_or_default());
     let within = |i: Interval, unit: f64| {

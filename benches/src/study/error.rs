@@ -38,6 +38,9 @@ pub enum StudyError {
     /// A picture failed.
     #[error(transparent)]
     Render(#[from] ltc_render::RenderError),
+    /// A process that was to measure failed.
+    #[error("a process that was to measure failed: {0}")]
+    Session(String),
     /// A document is none of ours.
     #[error("not a result of `ltc bench`: {0}")]
     Document(#[from] serde_json::Error),

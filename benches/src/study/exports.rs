@@ -5,29 +5,30 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use super::{Record, Run};
+use super::{Interval, Record, Run};
 
-/// A row for each record: id, unit, time with its interval in nanoseconds, bytes, every kind of error, then the ratio
-/// with its interval and what it may be.
+/// A row for each record: id, unit, time with its interval in nanoseconds, bytes, every kind of error, the ratio with its
+/// interval and what it may be, and the time beside a yardstick with its interval.
 pub fn csv(run: &Run) -> String {
     let mut kinds: Vec<&str> = run.records.iter().flat_map(|r| r.errors.keys()).map(String::as_str).collect();
     kinds.sort_unstable();
     kinds.dedup();
     let mut text = format!(
-        "id,per,time_ns,time_low_ns,time_high_ns,bytes,{}{}ratio,ratio_low,ratio_high,asked\n",
+        "id,per,time_ns,time_low_ns,time_high_ns,bytes,{}{}ratio,ratio_low,ratio_high,asked,relative,relative_low,relative_high\n",
         kinds.join(","),
         if kinds.is_empty() { "" } else { "," }
     );
     let number = |x: Option<f64>| x.map(|x| x.to_string()).unwrap_or_default();
     for record in &run.records {
-        let time = record.time;
+        let three =
+            |i: Option<Interval>| [i.map(|i| i.median), i.map(|i| i.low), i.map(|i| i.high)].map(number);
         let mut cells = vec![record.id.clone(), record.per.clone()];
-        cells.extend([time.map(|t| t.median), time.map(|t| t.low), time.map(|t| t.high)].map(number));
+        cells.extend(three(record.time));
         cells.push(record.bytes.map(|b| b.to_string()).unwrap_or_default());
         cells.extend(kinds.iter().map(|kind| number(record.errors.get(*kind).copied())));
-        let ratio = record.ratio;
-        cells.extend([ratio.map(|r| r.median), ratio.map(|r| r.low), ratio.map(|r| r.high)].map(number));
+        cells.extend(three(record.ratio));
         cells.push(number(record.asked));
+        cells.extend(three(record.relative));
         let _ = writeln!(text, "{}", cells.join(","));
     }
     text

@@ -1,6 +1,8 @@
 //! Run time against error: the study behind `ltc bench`.
 //!
 //! A [`Run`] is a list of [`Record`]s, each a thing with its time, its size and its errors, measured in one go on one machine.
+//! Errors and sizes are measured once, by [`run`]; times by [`session`]s, each of which ought to be a process of its own,
+//! because a program is as fast as its code and data happen to lie.
 //! [`page`] makes a page to look at of it, [`csv`], [`bencher`] and [`action`] feed what others draw dashboards with, and
 //! [`compare`] says what became slower or more wrong from one run to another.
 
@@ -13,6 +15,7 @@ mod machine;
 mod page;
 mod pictures;
 mod plot;
+mod session;
 mod tables;
 pub mod timer;
 
@@ -25,13 +28,15 @@ pub use ltc_records::{
     Change, Comparison, Interval, Machine, Record, Run, SCHEMA, Thresholds, Verdict, YARDSTICK, compare,
 };
 pub use page::page;
-use timer::{Rounds, Task};
+pub use session::{Session, session};
 
 /// What to measure.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
     /// In under a minute, with fewer cases, smaller pictures and wider intervals.
     pub quick: bool,
+    /// What the graphics device does, and nothing else: for a machine that is had for a short time.
+    pub device_only: bool,
     /// When it begins, RFC 3339 in UTC.
     pub date: String,
     /// The commit that is measured, if known.
@@ -48,15 +53,63 @@ pub struct Step<'a> {
     pub total: usize,
 }
 
-const STAGES: usize = 4;
+/// Sessions of a run. From six on, an interval between the least and the largest of their medians holds the true one in 95 of
+/// 100 cases.
+fn sessions(plan: &Plan) -> usize {
+    if plan.quick { 6 } else { 9 }
+}
 
-/// Measures everything; `observe` is told of each step.
+/// Measures everything: errors and sizes here, times by asking `again` for what [`session`] returns, several times. `observe`
+/// is told of each step.
 ///
 /// # Errors
-/// [`StudyError`]: a form worse than it may be, a table that is missing, a picture that cannot be made.
-pub fn run(plan: &Plan, catalogue: &Catalogue, observe: &dyn Fn(Step<'_>)) -> Result<Run, StudyError> {
-    let step = |done: usize, stage: &str| observe(Step { stage, done, total: STAGES });
+/// [`StudyError`]: a form worse than it may be, a table that is missing, a picture that cannot be made, a session that failed;
+/// [`StudyError::NoDevice`] where the device alone is asked for and there is none.
+pub fn run(
+    plan: &Plan,
+    catalogue: &Catalogue,
+    again: &dyn Fn() -> Result<Session, StudyError>,
+    observe: &dyn Fn(Step<'_>),
+) -> Result<Run, StudyError> {
+    let (before, sessions) = (if plan.device_only { 1 } else { 4 }, sessions(plan));
+    let step = |done: usize, stage: &str| observe(Step { stage, done, total: before + sessions });
     let mut machine = machine::here();
+    let mut judged = Vec::new();
+    if !plan.device_only {
+        judged.extend(on_processor(plan, catalogue, &step)?);
+    }
+    match gpu::errors(catalogue, plan, &|form| step(before - 1, form))? {
+        Ok((records, device)) => {
+            judged.extend(records);
+            machine.gpu = Some(device);
+        }
+        Err(reason) if plan.device_only => return Err(StudyError::NoDevice(reason)),
+        Err(_) => {}
+    }
+    let mut timed = Vec::with_capacity(sessions);
+    for k in 0..sessions {
+        step(before + k, &format!("times, session {} of {sessions}", k + 1));
+        timed.push(again()?);
+    }
+    machine.gpu_clock = timed.iter().find_map(|session| session.gpu_clock.clone());
+    step(before + sessions, "done");
+    Ok(Run {
+        schema: SCHEMA,
+        tool: env!("CARGO_PKG_VERSION").to_owned(),
+        quick: plan.quick,
+        date: plan.date.clone(),
+        commit: plan.commit.clone(),
+        machine,
+        records: session::joined(judged, timed),
+    })
+}
+
+/// Errors and sizes of what needs no graphics device, and of the pictures that it makes.
+fn on_processor(
+    plan: &Plan,
+    catalogue: &Catalogue,
+    step: &dyn Fn(usize, &str),
+) -> Result<Vec<Record>, StudyError> {
     let mut records = Vec::new();
     let versions: Vec<_> = catalogue.names().filter_map(|name| catalogue.find(name).ok()).collect();
     step(0, "tables");
@@ -64,97 +117,21 @@ pub fn run(plan: &Plan, catalogue: &Catalogue, observe: &dyn Fn(Step<'_>)) -> Re
         records.extend(tables::shipped(version, plan)?);
     }
     records.extend(tables::sizes(plan, |what| step(0, what))?);
-    step(1, "lookups and integrals");
-    records.extend(timed(plan, catalogue)?);
-    step(2, "pictures");
-    let isotropic = catalogue.find("ggx-isotropic")?;
-    let anisotropic = catalogue.find("ggx-anisotropic")?;
-    let of_pictures = RenderTables { isotropic: isotropic.table(), anisotropic: anisotropic.table() };
-    let (pictures, device) = pictures::measure(&of_pictures, plan, |scene| step(2, scene))?;
-    records.extend(pictures);
-    machine.gpu = device.ok();
-    on_device(&mut machine, &mut records, plan, catalogue, &|form| step(3, form))?;
-    step(STAGES, "done");
-    Ok(finished(plan, machine, records))
-}
-
-/// Measures what a graphics device does, and nothing else: for a machine that is had for a short time.
-///
-/// # Errors
-/// [`StudyError`]; [`StudyError::NoDevice`] where there is none.
-pub fn run_on_device(
-    plan: &Plan,
-    catalogue: &Catalogue,
-    observe: &dyn Fn(Step<'_>),
-) -> Result<Run, StudyError> {
-    let step = |done: usize, stage: &str| observe(Step { stage, done, total: 1 });
-    let (mut machine, mut records) = (machine::here(), Vec::new());
-    if let Some(reason) = on_device(&mut machine, &mut records, plan, catalogue, &|form| step(0, form))? {
-        return Err(StudyError::NoDevice(reason));
-    }
-    step(1, "done");
-    Ok(finished(plan, machine, records))
-}
-
-/// Why there is no device, if there is none.
-fn on_device(
-    machine: &mut Machine,
-    records: &mut Vec<Record>,
-    plan: &Plan,
-    catalogue: &Catalogue,
-    step: &dyn Fn(&str),
-) -> Result<Option<String>, StudyError> {
-    match gpu::measure(catalogue, plan, step)? {
-        Ok(found) => {
-            records.extend(found.records);
-            (machine.gpu, machine.gpu_clock) = (Some(found.device), Some(found.clock));
-            Ok(None)
-        }
-        Err(reason) => Ok(Some(reason)),
-    }
-}
-
-fn finished(plan: &Plan, machine: Machine, records: Vec<Record>) -> Run {
-    Run {
-        schema: SCHEMA,
-        tool: env!("CARGO_PKG_VERSION").to_owned(),
-        quick: plan.quick,
-        date: plan.date.clone(),
-        commit: plan.commit.clone(),
-        machine,
-        records,
-    }
-}
-
-/// Lookups and integrals, timed in turns, so that their ratios are those of the same minute.
-fn timed(plan: &Plan, catalogue: &Catalogue) -> Result<Vec<Record>, StudyError> {
-    let count = if plan.quick { 250 } else { 1000 };
-    let polygons: &[usize] = if plan.quick { &[3, 8, 64] } else { &[3, 4, 8, 16, 32, 64] };
-    let lights = integrals::Lights::new(catalogue.find("ggx-anisotropic")?.table(), count)?;
-    let mut forms = integrals::forms(&lights, polygons)?;
-    let mut records = vec![Record::new(YARDSTICK, "step")];
-    let mut tasks = vec![timer::yardstick()];
-    for name in ["ggx-isotropic", "ggx-isotropic-dropin", "ggx-anisotropic"] {
-        let Ok(version) = catalogue.find(name) else { continue };
-        for (task, way) in lookups::tasks(version, 1000).into_iter().zip(["interpolated", "inverted"]) {
-            records.push(Record::new(format!("lookup/{name}/{way}"), "lookup"));
-            tasks.push(task);
-        }
-    }
-    for form in &mut forms {
+    step(1, "integrals");
+    let lights = session::lights(plan, catalogue)?;
+    for form in &mut integrals::forms(&lights, session::polygons(plan))? {
         let (max, rms) = form.errors()?;
         let record = Record::new(format!("integral/{}", form.name), "light");
         records.push(record.error("max", max).error("rms", rms));
     }
-    for form in &mut forms {
-        tasks.push(Task::new(form.count(), || form.run()));
-    }
-    let rounds =
-        if plan.quick { Rounds { count: 25, seconds: 4e-3 } } else { Rounds { count: 101, seconds: 10e-3 } };
-    let times = timer::nanoseconds(&mut tasks, rounds);
-    let with_time = |(record, time): (Record, Option<Interval>)| {
-        let time = time.ok_or_else(|| StudyError::Untimed(record.id.clone()))?;
-        Ok(record.timed(time))
-    };
-    records.into_iter().zip(times).map(with_time).collect()
+    step(2, "pictures");
+    records.extend(pictures::errors(&render_tables(catalogue)?, plan, |scene| step(2, scene))?);
+    Ok(records)
+}
+
+/// Those that pictures are made with.
+fn render_tables(catalogue: &Catalogue) -> Result<RenderTables<'_>, StudyError> {
+    let [isotropic, anisotropic] =
+        [catalogue.find("ggx-isotropic")?.table(), catalogue.find("ggx-anisotropic")?.table()];
+    Ok(RenderTables { isotropic, anisotropic })
 }

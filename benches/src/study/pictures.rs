@@ -1,10 +1,12 @@
 //! Whole pictures: by LTCs, by sampling, and what separates them from the truth.
 
-use ltc_render::{
-    Backend, ErrorFigures, Image, RenderOptions, RenderTables, Rendered, Scene, ToneMap, render,
-};
+use std::ops::ControlFlow;
+
+use ltc_render::{Backend, ErrorFigures, Image, RenderOptions, RenderTables, Renderer, Scene, ToneMap};
+use ltc_shade_gpu::{Gpu, GpuOptions};
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip};
 
+use super::timer::{self, Task};
 use super::{Interval, Plan, Record, StudyError};
 
 /// The scenes: their names and files.
@@ -19,6 +21,9 @@ const SCENES: [(&str, &str); 5] = [
 /// The sampling of the reference takes so many samples at a time: one for each of its techniques.
 const TECHNIQUES: u32 = 3;
 
+/// The way of the graphics device.
+const ON_DEVICE: &str = "ltc_gpu";
+
 /// How long and how finely to measure.
 struct Effort {
     /// Pixels in a row and in a column are multiplied by this.
@@ -27,7 +32,7 @@ struct Effort {
     truth: u32,
     /// Samples of the curve of sampling, for each technique; those that come near the truth's are left out.
     curve: &'static [u32],
-    /// How often each picture is timed at most, and for how many seconds; twice at least.
+    /// How often each picture is timed at most, and for how many seconds; once at least.
     rounds: usize,
     seconds: f64,
 }
@@ -35,102 +40,195 @@ struct Effort {
 impl Effort {
     fn of(plan: &Plan) -> Self {
         if plan.quick {
-            Self { scale: 1, truth: 1024, curve: &[1, 4, 16, 64], rounds: 9, seconds: 0.4 }
+            Self { scale: 1, truth: 1024, curve: &[1, 4, 16, 64], rounds: 5, seconds: 0.03 }
         } else {
             Self {
                 scale: 2,
                 truth: 16_384,
                 curve: &[1, 2, 4, 8, 16, 32, 64, 128, 256, 341],
-                rounds: 25,
-                seconds: 5.0,
+                rounds: 9,
+                seconds: 0.5,
             }
         }
     }
 }
 
-/// All pictures of all scenes. Says the device of the GPU, if there is one, or why there is none.
+/// Errors of all pictures of all scenes.
 ///
 /// # Errors
-/// Those of rendering on the CPU.
-pub fn measure(
+/// Those of rendering on the processor.
+pub fn errors(
     tables: &RenderTables<'_>,
     plan: &Plan,
     mut step: impl FnMut(&str),
-) -> Result<(Vec<Record>, Result<String, String>), StudyError> {
-    let effort = Effort::of(plan);
+) -> Result<Vec<Record>, StudyError> {
+    let (effort, renderers) = (Effort::of(plan), Renderers::new(tables)?);
     let mut records = Vec::new();
-    let mut device = Err("no scene".to_owned());
-    for (name, text) in SCENES {
-        step(name);
-        let mut scene: Scene = serde_json::from_str(text)?;
-        scene.camera.width *= effort.scale;
-        scene.camera.height *= effort.scale;
-        let studio = Studio { name, scene, tables, effort: &effort };
-        device = studio.measure(&mut records)?;
+    for studio in studios(&renderers, &effort) {
+        let studio = studio?;
+        step(studio.name);
+        records.extend(studio.errors()?);
     }
-    Ok((records, device))
+    Ok(records)
+}
+
+/// Times of the same.
+///
+/// # Errors
+/// Those of rendering on the processor.
+pub fn times(tables: &RenderTables<'_>, plan: &Plan) -> Result<Vec<Record>, StudyError> {
+    let (effort, renderers) = (Effort::of(plan), Renderers::new(tables)?);
+    let mut yardstick = Yardstick::new();
+    let mut records = Vec::new();
+    for studio in studios(&renderers, &effort) {
+        records.extend(studio?.times(&mut yardstick)?);
+    }
+    let Some(step) = Interval::of(yardstick.times) else { return Ok(records) };
+    // A step now and then is held up by other threads: the median of all is what frames are divided by.
+    for record in &mut records {
+        // What a device of its own takes has nothing to do with the processor's clock.
+        if !record.id.ends_with(ON_DEVICE) || renderers.software {
+            record.relative = record.time.map(|time| time.over(step.median));
+        }
+    }
+    records.push(Record::new("yardstick/threads", "step").timed(step));
+    Ok(records)
+}
+
+/// What makes the pictures.
+struct Renderers<'a> {
+    cpu: Renderer<'a>,
+    reference: Renderer<'a>,
+    /// Where there is a device.
+    gpu: Option<Renderer<'a>>,
+    /// Whether that device is the processor.
+    software: bool,
+}
+
+impl<'a> Renderers<'a> {
+    fn new(tables: &RenderTables<'a>) -> Result<Self, StudyError> {
+        Ok(Self {
+            cpu: Renderer::new(tables, Backend::Cpu)?,
+            reference: Renderer::new(tables, Backend::Reference)?,
+            gpu: Renderer::new(tables, Backend::Gpu).ok(),
+            software: Gpu::new(GpuOptions::default()).is_ok_and(|gpu| gpu.info().software),
+        })
+    }
+}
+
+/// A way to make a picture.
+struct Way<'a> {
+    name: String,
+    renderer: &'a Renderer<'a>,
+    samples: u32,
+    /// Whether it is the graphics device's.
+    on_device: bool,
 }
 
 struct Studio<'a> {
     name: &'a str,
     scene: Scene,
-    tables: &'a RenderTables<'a>,
+    renderers: &'a Renderers<'a>,
     effort: &'a Effort,
 }
 
-impl Studio<'_> {
-    fn render(&self, backend: Backend, samples: u32, seed: u64) -> Result<Rendered, StudyError> {
-        let options =
-            RenderOptions { samples_per_pixel: 1, reference_samples: samples, seed, progress: None };
-        Ok(render(&self.scene, self.tables, backend, &options)?)
+fn studios<'a>(
+    renderers: &'a Renderers<'a>,
+    effort: &'a Effort,
+) -> impl Iterator<Item = Result<Studio<'a>, StudyError>> {
+    SCENES.into_iter().map(move |(name, text)| {
+        let mut scene: Scene = serde_json::from_str(text)?;
+        scene.camera.width *= effort.scale;
+        scene.camera.height *= effort.scale;
+        Ok(Studio { name, scene, renderers, effort })
+    })
+}
+
+fn options(samples: u32, seed: u64) -> RenderOptions<'static> {
+    RenderOptions { samples_per_pixel: 1, reference_samples: samples, seed, progress: None }
+}
+
+impl<'a> Studio<'a> {
+    /// Samples of the truth.
+    fn truth(&self) -> u32 {
+        (self.effort.truth / u32::try_from(self.scene.lights.len()).unwrap_or(u32::MAX).max(1)).max(1)
     }
 
-    fn measure(&self, records: &mut Vec<Record>) -> Result<Result<String, String>, StudyError> {
+    fn ways(&self) -> Vec<Way<'a>> {
+        let Renderers { cpu, reference, gpu, .. } = self.renderers;
+        let way =
+            |name: &str, renderer, on_device| Way { name: name.to_owned(), renderer, samples: 1, on_device };
+        let mut ways = vec![way("ltc_cpu", cpu, false)];
+        ways.extend(gpu.as_ref().map(|gpu| way(ON_DEVICE, gpu, true)));
+        ways.extend(self.effort.curve.iter().filter(|n| 8 * **n <= self.truth()).map(|samples| Way {
+            samples: *samples,
+            ..way(&format!("sampling_{:04}", samples * TECHNIQUES), reference, false)
+        }));
+        ways
+    }
+
+    fn id(&self, way: &Way<'_>) -> String {
+        format!("image/{}/{}", self.name, way.name)
+    }
+
+    fn errors(&self) -> Result<Vec<Record>, StudyError> {
         // The truth has a seed of its own: sampling must not be judged by its own samples.
-        let samples = self.effort.truth / u32::try_from(self.scene.lights.len()).unwrap_or(u32::MAX).max(1);
-        let truth = self.render(Backend::Reference, samples.max(1), 2)?;
-        records.push(self.record("ltc_cpu", &truth, || self.render(Backend::Cpu, 1, 1))?);
-        let gpu = self.render(Backend::Gpu, 1, 1);
-        let device = match gpu {
-            Ok(picture) => {
-                records.push(self.record("ltc_gpu", &truth, || self.render(Backend::Gpu, 1, 1))?);
-                Ok(picture.device)
-            }
-            Err(reason) => Err(reason.to_string()),
+        let truth = self.renderers.reference.render(&self.scene, &options(self.truth(), 2))?;
+        let one = |way: Way<'_>| {
+            let found = way.renderer.render(&self.scene, &options(way.samples, 1))?;
+            let errors = ErrorFigures::of(&found.image, &truth.image, &truth.on_surface);
+            let record = Record::new(self.id(&way), "frame")
+                .error("rmse", errors.rmse)
+                .error("relative_rmse", errors.relative_rmse.unwrap_or(0.0))
+                .error("flip", perceived(&truth.image, &found.image));
+            Ok(record)
         };
-        for samples in self.effort.curve.iter().filter(|n| 8 * **n <= samples) {
-            let way = format!("sampling_{:04}", samples * TECHNIQUES);
-            records.push(self.record(&way, &truth, || self.render(Backend::Reference, *samples, 1))?);
-        }
-        Ok(device)
+        self.ways().into_iter().map(one).collect()
     }
 
-    fn record(
-        &self,
-        way: &str,
-        truth: &Rendered,
-        mut picture: impl FnMut() -> Result<Rendered, StudyError>,
-    ) -> Result<Record, StudyError> {
-        let id = format!("image/{}/{way}", self.name);
-        let mut times = Vec::new();
-        // The first one warms up; it is counted where one alone takes long.
-        let mut last = picture()?;
-        let mut spent = last.shading_seconds;
-        if spent > self.effort.seconds {
-            times.push(spent * 1e9);
+    fn times(&self, yardstick: &mut Yardstick) -> Result<Vec<Record>, StudyError> {
+        let mut records = Vec::new();
+        for way in self.ways() {
+            let (mut times, mut spent) = (Vec::new(), 0.0);
+            let mut is_warm = false;
+            way.renderer.frames(&self.scene, &options(way.samples, 1), |frame| {
+                yardstick.measure();
+                // The first frame warms up, and a device's programs are compiled for it; a long one of the processor counts.
+                if is_warm || (!way.on_device && frame.shading_seconds > self.effort.seconds) {
+                    spent += frame.shading_seconds;
+                    times.push(frame.shading_seconds * 1e9);
+                }
+                is_warm = true;
+                if times.is_empty() || (times.len() < self.effort.rounds && spent < self.effort.seconds) {
+                    ControlFlow::Continue(())
+                } else {
+                    ControlFlow::Break(())
+                }
+            })?;
+            let id = self.id(&way);
+            let time = Interval::of(times).ok_or_else(|| StudyError::Untimed(id.clone()))?;
+            records.push(Record::new(id, "frame").timed(time));
         }
-        while times.len() < 2 || (times.len() < self.effort.rounds && spent < self.effort.seconds) {
-            last = picture()?;
-            spent += last.shading_seconds;
-            times.push(last.shading_seconds * 1e9);
-        }
-        let time = Interval::of(times).ok_or_else(|| StudyError::Untimed(id.clone()))?;
-        let errors = ErrorFigures::of(&last.image, &truth.image, &truth.on_surface);
-        Ok(Record::new(id, "frame")
-            .timed(time)
-            .error("rmse", errors.rmse)
-            .error("relative_rmse", errors.relative_rmse.unwrap_or(0.0))
-            .error("flip", perceived(&truth.image, &last.image)))
+        Ok(records)
+    }
+}
+
+/// How slow all threads are.
+struct Yardstick {
+    task: Task<'static>,
+    times: Vec<f64>,
+}
+
+impl Yardstick {
+    fn new() -> Self {
+        let mut task = timer::yardstick_of_all_threads();
+        // Warms up.
+        task.nanoseconds(1);
+        Self { task, times: Vec::new() }
+    }
+
+    fn measure(&mut self) {
+        self.times.push(self.task.nanoseconds(1));
     }
 }
 

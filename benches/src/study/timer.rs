@@ -3,6 +3,8 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use rayon::prelude::*;
+
 use super::Interval;
 
 /// How long to measure.
@@ -24,6 +26,11 @@ impl<'a> Task<'a> {
     /// `run` does `units` of what is asked for. It must hand its results to [`std::hint::black_box`].
     pub fn new(units: usize, run: impl FnMut() + 'a) -> Self {
         Self { run: Box::new(run), units: units as f64 }
+    }
+
+    /// What one unit takes, over so many repetitions.
+    pub fn nanoseconds(&mut self, repeats: u32) -> f64 {
+        self.seconds(repeats) * 1e9 / (self.units * f64::from(repeats))
     }
 
     fn seconds(&mut self, repeats: u32) -> f64 {
@@ -60,20 +67,42 @@ pub fn yardstick() -> Task<'static> {
     })
 }
 
-/// Nanoseconds of a unit of each task.
+/// The same on all threads at once: for what uses them all. Pieces are more than threads, so that one that is held up does not
+/// hold up the others. Each has chains enough that what slows two threads of one core down slows these, too.
+pub fn yardstick_of_all_threads() -> Task<'static> {
+    const PIECES: usize = 64;
+    const STEPS: usize = 40_000;
+    Task::new(STEPS, || {
+        (0..PIECES).into_par_iter().for_each(|_| {
+            let mut chains = black_box([1.0_f64, 0.9, 0.8, 0.7, 0.6, 0.5]);
+            for _ in 0..STEPS {
+                for x in &mut chains {
+                    *x = *x * 0.999 + 0.001;
+                }
+            }
+            black_box(chains);
+        });
+    })
+}
+
+/// Nanoseconds of a unit of each task, in each turn.
 ///
 /// Tasks take turns: every one is measured once before any is measured again, so that what slows the machine down for some
 /// seconds falls on all of them, and shows in the intervals and not in the comparison.
-pub fn nanoseconds(tasks: &mut [Task<'_>], rounds: Rounds) -> Vec<Option<Interval>> {
+pub fn in_turns(tasks: &mut [Task<'_>], rounds: Rounds) -> Vec<Vec<f64>> {
     let repeats: Vec<u32> = tasks.iter_mut().map(|task| task.repeats(rounds.seconds)).collect();
     let mut samples = vec![Vec::with_capacity(rounds.count); tasks.len()];
     for _ in 0..rounds.count {
         for ((task, repeats), samples) in tasks.iter_mut().zip(&repeats).zip(&mut samples) {
-            let units = task.units * f64::from(*repeats);
-            samples.push(task.seconds(*repeats) * 1e9 / units);
+            samples.push(task.nanoseconds(*repeats));
         }
     }
-    samples.into_iter().map(Interval::of).collect()
+    samples
+}
+
+/// Turn by turn, one thing's time over another's.
+pub fn quotients(times: &[f64], others: &[f64]) -> Option<Interval> {
+    Interval::of(times.iter().zip(others).map(|(a, b)| a / b).collect())
 }
 
 #[cfg(test)]
@@ -86,9 +115,13 @@ mod tests {
 
     #[test]
     fn the_yardstick_takes_time_and_no_more_than_a_chain_does() {
-        let time = nanoseconds(&mut [yardstick()], Rounds { count: 5, seconds: 1e-3 })[0].unwrap();
-        // Two operations of three to five cycles each; unoptimised and on a busy machine more.
-        assert!((0.5..200.0).contains(&time.median), "{time:?}");
+        let rounds = Rounds { count: 5, seconds: 1e-3 };
+        let times = in_turns(&mut [yardstick(), yardstick_of_all_threads()], rounds);
+        let [one, all] = [0, 1].map(|i| Interval::of(times[i].clone()).unwrap().median);
+        // Two operations of three to five cycles each; unoptimised and on a busy machine more. Sixty-four pieces of six
+        // chains on all threads.
+        assert!((0.5..200.0).contains(&one), "{one}");
+        assert!((1.0..50_000.0).contains(&all), "{all}");
     }
 
     #[test]
@@ -104,8 +137,8 @@ mod tests {
                 black_box(work(4_000));
             }),
         ];
-        let times = nanoseconds(&mut tasks, Rounds { count: 31, seconds: 1e-3 });
-        let [one, two, halves] = [0, 1, 2].map(|i| times[i].unwrap().median);
+        let times = in_turns(&mut tasks, Rounds { count: 31, seconds: 1e-3 });
+        let [one, two, halves] = [0, 1, 2].map(|i| Interval::of(times[i].clone()).unwrap().median);
         assert!((1.7..2.3).contains(&(two / one)), "{one} {two}");
         assert!((0.85..1.15).contains(&(halves / one)), "{one} {halves}");
     }

@@ -52,7 +52,7 @@ pub struct Change {
 pub struct Comparison {
     /// Every measure that both have, in the order of the first.
     pub changes: Vec<Change>,
-    /// How much slower the machine as a whole was: divided out of what was timed in turns with the yardstick.
+    /// How much slower the machine as a whole was: nothing that was timed beside a yardstick is judged by it.
     pub drift: Option<Interval>,
     /// Measures that the second lacks.
     pub gone: Vec<String>,
@@ -70,40 +70,43 @@ impl Comparison {
 /// Compares `after` with `before`.
 pub fn compare(before: &Run, after: &Run, thresholds: Thresholds) -> Comparison {
     let found: BTreeMap<&str, &Record> = after.records.iter().map(|r| (r.id.as_str(), r)).collect();
-    let drift = drift(before, after, YARDSTICK);
+    let drift = drift(before, after);
     let mut comparison =
         Comparison { changes: Vec::new(), drift, gone: Vec::new(), doubts: doubts(before, after) };
     for old in before.records.iter().filter(|record| record.word(0) != "yardstick") {
         let new = found.get(old.id.as_str()).copied();
         for (measure, value) in measures(old) {
-            let other = new.and_then(|new| measures(new).into_iter().find(|(m, _)| *m == measure));
-            match other {
-                Some((_, other)) => {
-                    let yardstick = yardstick(old).filter(|_| measure == "time");
-                    let drift = yardstick.and_then(|id| self::drift(before, after, &id));
-                    comparison.changes.push(change(&old.id, measure, [value, other], drift, thresholds));
-                }
-                None => comparison.gone.push(format!("{} {measure}", old.id)),
-            }
+            let Some((new, other)) = new.and_then(|new| Some((new, measure_of(new, &measure)?))) else {
+                comparison.gone.push(format!("{} {measure}", old.id));
+                continue;
+            };
+            let judged = judged(&measure, [old, new]).unwrap_or([value, other]);
+            let (ratio, verdict) = change(&measure, judged, thresholds);
+            let values = [value.median, other.median];
+            comparison.changes.push(Change { id: old.id.clone(), measure, values, ratio, verdict });
         }
     }
     comparison
 }
 
-/// Time of a yardstick in the second run over that in the first.
-fn drift(before: &Run, after: &Run, yardstick: &str) -> Option<Interval> {
-    let of = |run: &Run| run.records.iter().find(|record| record.id == yardstick)?.time;
-    let (old, new) = (of(before)?, of(after)?);
-    Some(Interval { median: new.median / old.median, low: new.low / old.high, high: new.high / old.low })
+/// Time of a core's yardstick in the second run over that in the first.
+fn drift(before: &Run, after: &Run) -> Option<Interval> {
+    let of = |run: &Run| run.records.iter().find(|record| record.id == YARDSTICK)?.time;
+    Some(over(of(after)?, of(before)?))
 }
 
-/// The yardstick that a record was timed in turns with.
-fn yardstick(record: &Record) -> Option<String> {
-    match record.word(0) {
-        "lookup" | "integral" => Some(YARDSTICK.to_owned()),
-        "gpu" => Some(format!("yardstick/gpu/{}", record.word(1))),
-        _ => None,
-    }
+/// What a measure is judged by in place of itself: times by those beside a yardstick, where both have them.
+fn judged(measure: &str, [old, new]: [&Record; 2]) -> Option<[Interval; 2]> {
+    if measure == "time" { Some([old.relative?, new.relative?]) } else { None }
+}
+
+fn measure_of(record: &Record, measure: &str) -> Option<Interval> {
+    measures(record).into_iter().find(|(name, _)| name == measure).map(|(_, value)| value)
+}
+
+/// The quotient, as far as both leave it open.
+fn over(new: Interval, old: Interval) -> Interval {
+    Interval { median: new.median / old.median, low: new.low / old.high, high: new.high / old.low }
 }
 
 /// Every figure of a record: `time` in nanoseconds, `bytes`, and errors by their kind. Exact ones are intervals of no width.
@@ -116,24 +119,17 @@ pub fn measures(record: &Record) -> Vec<(String, Interval)> {
     time.into_iter().chain(bytes).chain(ratio).chain(errors).collect()
 }
 
-fn change(
-    id: &str,
-    measure: String,
-    [old, new]: [Interval; 2],
-    drift: Option<Interval>,
-    thresholds: Thresholds,
-) -> Change {
+fn change(measure: &str, [old, new]: [Interval; 2], thresholds: Thresholds) -> (Interval, Verdict) {
     let is_timed = measure == "time" || measure == "ratio";
     let is_error = !is_timed && measure != "bytes";
     // Two errors in the noise of rounding are equal.
     let floor = if is_error { thresholds.error_floor } else { f64::MIN_POSITIVE };
-    let raised = |x: f64| x.max(floor);
-    let drift = drift.unwrap_or(Interval { median: 1.0, low: 1.0, high: 1.0 });
-    let ratio = Interval {
-        median: raised(new.median) / raised(old.median) / drift.median,
-        low: raised(new.low) / raised(old.high) / drift.high,
-        high: raised(new.high) / raised(old.low) / drift.low,
+    let raised = |i: Interval| Interval {
+        median: i.median.max(floor),
+        low: i.low.max(floor),
+        high: i.high.max(floor),
     };
+    let ratio = over(raised(new), raised(old));
     let threshold = 1.0 + if is_timed { thresholds.time } else { thresholds.error };
     let verdict = if ratio.median > threshold && ratio.low > 1.0 {
         Verdict::Worse
@@ -142,7 +138,7 @@ fn change(
     } else {
         Verdict::Same
     };
-    Change { id: id.to_owned(), measure, values: [old.median, new.median], ratio, verdict }
+    (ratio, verdict)
 }
 
 fn doubts(before: &Run, after: &Run) -> Vec<String> {
@@ -218,47 +214,44 @@ mod tests {
         assert_eq!(worse(&after), ["integral/quad/exact/f32 max"]);
     }
 
-    #[test]
-    fn a_slower_machine_is_no_slower_program() {
-        let scaled = |by: f64, clock: f64| {
-            let mut run = run();
-            let record = Record::new(YARDSTICK, "step");
-            run.records.push(record.timed(Interval { median: 2.0, low: 1.99, high: 2.01 }));
-            for record in &mut run.records {
-                let by = if record.id == YARDSTICK { clock } else { by };
-                if let Some(time) = &mut record.time {
-                    *time = Interval { median: by * time.median, low: by * time.low, high: by * time.high };
-                }
+    /// The run on a machine whose clock is slower by a factor, where all things take longer by another.
+    fn beside_a_yardstick(clock: f64, by: f64) -> Run {
+        let around = |x: f64| Interval { median: x, low: 0.99 * x, high: 1.01 * x };
+        let mut run = run();
+        for record in &mut run.records {
+            if let Some(time) = record.time {
+                record.time = Some(around(by * time.median));
+                record.relative = Some(around(by * time.median / clock));
             }
-            run
-        };
-        let before = scaled(1.0, 1.0);
-        let same = compare(&before, &scaled(1.2, 1.2), Thresholds::default());
-        assert!(same.is_good(), "{:?}", same.changes);
-        assert!((same.drift.unwrap().median - 1.2).abs() < 1e-12);
-        assert!((same.changes[0].ratio.median - 1.0).abs() < 1e-12);
-        // On a machine that is faster by a fifth, the same times are a loss.
-        assert!(!compare(&before, &scaled(1.0, 1.0 / 1.2), Thresholds::default()).is_good());
+        }
+        run.records.push(Record::new(YARDSTICK, "step").timed(around(2.0 * clock)));
+        run.records.push(Record::new("ratio/gpu/1080p/line_over_quad", "ratio").ratio(around(by), Some(0.5)));
+        run
     }
 
     #[test]
-    fn a_device_has_its_own_yardstick_and_its_ratios_are_compared() {
-        let time = |median: f64| Interval { median, low: 0.99 * median, high: 1.01 * median };
-        let on_device = |clock: f64, by: f64| {
-            let mut run = run();
-            run.records.push(Record::new("yardstick/gpu/1080p", "frame").timed(time(clock)));
-            run.records.push(Record::new("gpu/1080p/compute/empty", "frame").timed(time(3.0 * by)));
-            run.records
-                .push(Record::new("ratio/gpu/1080p/line_over_quad", "ratio").ratio(time(by), Some(0.5)));
-            run
+    fn a_slower_machine_is_no_slower_program() {
+        let before = beside_a_yardstick(1.0, 1.0);
+        let worse = |clock: f64, by: f64| -> Vec<String> {
+            let found = compare(&before, &beside_a_yardstick(clock, by), Thresholds::default());
+            assert!((found.drift.unwrap().median - clock).abs() < 1e-12);
+            let worse = found.changes.into_iter().filter(|c| c.verdict == Verdict::Worse);
+            worse.map(|c| format!("{} {}", c.id.split('/').next().unwrap_or(""), c.measure)).collect()
         };
-        let before = on_device(1.0, 1.0);
-        let slower = compare(&before, &on_device(1.3, 1.3), Thresholds::default());
-        let worse: Vec<_> = slower.changes.iter().filter(|c| c.verdict == Verdict::Worse).collect();
-        // The clock explains the frame, and not the ratio.
-        assert_eq!(worse.iter().map(|c| c.measure.as_str()).collect::<Vec<_>>(), ["ratio"]);
-        let worse = compare(&before, &on_device(1.0, 1.3), Thresholds::default());
-        assert_eq!(worse.changes.iter().filter(|c| c.verdict == Verdict::Worse).count(), 2);
+        // The clock explains the times, and not the ratio.
+        assert_eq!(worse(1.2, 1.2), ["ratio ratio"]);
+        assert!(worse(1.2, 1.0).is_empty());
+        // On a machine that is faster by a fifth, the same times are a loss.
+        assert_eq!(worse(1.0 / 1.2, 1.0), ["integral time", "integral time"]);
+        let same = compare(&before, &beside_a_yardstick(1.2, 1.2), Thresholds::default());
+        assert!((same.changes[0].ratio.median - 1.0).abs() < 1e-12);
+        assert!((same.changes[0].values[1] - 48.0).abs() < 1e-9, "what is shown is in nanoseconds");
+    }
+
+    #[test]
+    fn where_one_run_has_no_yardstick_times_are_compared_as_they_are() {
+        let after = beside_a_yardstick(1.2, 1.2);
+        assert_eq!(worse(&after), ["integral/quad/exact/f32 time", "integral/quad/exact/f64 time"]);
     }
 
     #[test]

@@ -6,9 +6,11 @@
 mod compare;
 mod machine;
 mod number;
+mod pool;
 mod record;
 
 pub use compare::{Change, Comparison, Thresholds, Verdict, compare, measures};
 pub use machine::Machine;
 pub use number::short;
+pub use pool::pooled;
 pub use record::{Interval, Record, Run, SCHEMA, YARDSTICK};

@@ -9,7 +9,7 @@ use crate::Machine;
 /// The layout of [`Run`] that this program writes.
 pub const SCHEMA: u32 = 1;
 
-/// The record of what takes as long as the machine is slow, timed in the same turns as lookups and integrals.
+/// The record of what takes as long as a core is slow, timed in the same turns as lookups and integrals.
 pub const YARDSTICK: &str = "yardstick/chain";
 
 /// One run of the study.
@@ -41,6 +41,10 @@ pub struct Record {
     /// Time of one unit, in nanoseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time: Option<Interval>,
+    /// The same in times of a yardstick that was measured beside it: what the machine's clock does falls out. Two runs are
+    /// compared by it, where both have it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relative: Option<Interval>,
     /// Size, where it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bytes: Option<u64>,
@@ -72,6 +76,13 @@ impl Record {
     #[must_use]
     pub fn timed(mut self, time: Interval) -> Self {
         self.time = Some(time);
+        self
+    }
+
+    /// With a time in times of a yardstick.
+    #[must_use]
+    pub fn relative(mut self, relative: Option<Interval>) -> Self {
+        self.relative = relative;
         self
     }
 
@@ -118,6 +129,12 @@ impl Interval {
         let outer = ranks_outside(n);
         let middle = if n % 2 == 1 { samples[n / 2] } else { 0.5 * (samples[n / 2 - 1] + samples[n / 2]) };
         Some(Self { median: middle, low: samples[outer], high: samples[n - 1 - outer] })
+    }
+
+    /// In units of something else.
+    #[must_use]
+    pub fn over(&self, unit: f64) -> Self {
+        Self { median: self.median / unit, low: self.low / unit, high: self.high / unit }
     }
 
     /// Whether both hold a common value.

@@ -1,5 +1,7 @@
 //! LTC shading on the GPU.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use glam::{DVec3, Vec3};
 use ltc_core::{Alpha, PrefilteredTexture, TextureFrame};
 use ltc_shade_gpu::{
@@ -16,12 +18,44 @@ use crate::shader::Shade;
 use crate::texture_map::TextureMap;
 use crate::{RenderError, RenderTables};
 
-/// The GPU back end: a device with the tables on it.
-pub(crate) struct GpuBackend {
+/// What scenes share: a device with the tables on it, and the programs that were compiled for it.
+pub(crate) struct Device {
     gpu: Gpu,
-    shader: Shader,
     isotropic: TableTextures,
     anisotropic: TableTextures,
+    /// Without textures, by whether slices are baked.
+    shaders: Mutex<[Option<Arc<Shader>>; 2]>,
+}
+
+impl Device {
+    pub fn open(tables: &RenderTables<'_>) -> Result<Self, RenderError> {
+        let gpu = Gpu::new(GpuOptions::default())?;
+        let isotropic = TableTextures::upload(&gpu, tables.isotropic)?;
+        let anisotropic = TableTextures::upload(&gpu, tables.anisotropic)?;
+        Ok(Self { gpu, isotropic, anisotropic, shaders: Mutex::default() })
+    }
+
+    fn shader(&self, textures: &[PrefilteredTexture], baked: bool) -> Result<Arc<Shader>, RenderError> {
+        // What only textured lights or baked slices need is compiled for them alone.
+        if !textures.is_empty() {
+            let textures = Some(LightTextures::upload(&self.gpu, textures)?);
+            return Ok(Arc::new(Shader::with(&self.gpu, ShadingOptions { textures, baked })?));
+        }
+        // Whoever panicked with it left it whole: a shader is put in when it is complete.
+        let mut shaders = self.shaders.lock().unwrap_or_else(PoisonError::into_inner);
+        let place = &mut shaders[usize::from(baked)];
+        if let Some(shader) = place {
+            return Ok(Arc::clone(shader));
+        }
+        let shader = Arc::new(Shader::with(&self.gpu, ShadingOptions { textures: None, baked })?);
+        Ok(Arc::clone(place.insert(shader)))
+    }
+}
+
+/// A scene on the device.
+pub(crate) struct GpuBackend<'a> {
+    device: &'a Device,
+    shader: Arc<Shader>,
     baked: Option<Baked>,
     lights: Vec<AreaLight>,
 }
@@ -53,36 +87,25 @@ impl Baked {
     }
 }
 
-impl GpuBackend {
-    pub fn open(
+impl<'a> GpuBackend<'a> {
+    pub fn new(
+        device: &'a Device,
         tables: &RenderTables<'_>,
         lights: &[Emitter],
         materials: &[ResolvedMaterial],
     ) -> Result<Self, RenderError> {
-        let gpu = Gpu::new(GpuOptions::default())?;
         let textures: Vec<PrefilteredTexture> = prefiltered(lights)?.into_iter().flatten().collect();
-        // What only textured lights or baked slices need is compiled for them alone.
-        let textures = match textures.as_slice() {
-            [] => None,
-            some => Some(LightTextures::upload(&gpu, some)?),
-        };
-        let baked = Baked::of(&gpu, tables.anisotropic, materials)?;
-        let shader = Shader::with(&gpu, ShadingOptions { textures, baked: baked.is_some() })?;
+        let baked = Baked::of(&device.gpu, tables.anisotropic, materials)?;
+        let shader = device.shader(&textures, baked.is_some())?;
         let mut numbers = 0..;
-        Ok(Self {
-            shader,
-            baked,
-            isotropic: TableTextures::upload(&gpu, tables.isotropic)?,
-            anisotropic: TableTextures::upload(&gpu, tables.anisotropic)?,
-            lights: lights.iter().map(|emitter| light(emitter, &mut numbers)).collect(),
-            gpu,
-        })
+        let lights = lights.iter().map(|emitter| light(emitter, &mut numbers)).collect();
+        Ok(Self { device, shader, baked, lights })
     }
 }
 
-impl Shade for GpuBackend {
+impl Shade for GpuBackend<'_> {
     fn device(&self) -> String {
-        self.gpu.info().to_string()
+        self.device.gpu.info().to_string()
     }
 
     fn batch(&self) -> usize {
@@ -91,12 +114,12 @@ impl Shade for GpuBackend {
 
     fn shade(&self, points: &[SurfacePoint]) -> Result<Vec<DVec3>, RenderError> {
         let tables = Tables {
-            isotropic: Some(&self.isotropic),
-            anisotropic: Some(&self.anisotropic),
+            isotropic: Some(&self.device.isotropic),
+            anisotropic: Some(&self.device.anisotropic),
             baked: self.baked.as_ref().map(|baked| &baked.slices),
         };
         let points: Vec<_> = points.iter().map(|point| surface_point(point, self.baked.as_ref())).collect();
-        let radiance = self.shader.shade(&self.gpu, tables, &points, &self.lights)?;
+        let radiance = self.shader.shade(&self.device.gpu, tables, &points, &self.lights)?;
         Ok(radiance.into_iter().map(|r| Vec3::from_array(r).as_dvec3()).collect())
     }
 }

@@ -54,7 +54,7 @@ pub use image::{Format, Image};
 pub use light::{Light, Rectangle};
 pub use material::{Material, ResolvedMaterial};
 pub use object::{Object, Plane, Sphere};
-pub use render::{Backend, RenderOptions, RenderTables, Rendered, render};
+pub use render::{Backend, RenderOptions, RenderTables, Rendered, Renderer, render};
 pub use scene::Scene;
 pub use texture::{Checker, Frame, Texture};
 pub use tone::ToneMap;

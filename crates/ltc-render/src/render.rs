@@ -1,5 +1,6 @@
 //! A scene to a picture.
 
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 use ltc_core::PrefilteredTexture;
@@ -9,6 +10,8 @@ use rayon::prelude::*;
 use crate::cpu::Cpu;
 use crate::emitter::Emitter;
 use crate::gbuffer::GBuffer;
+#[cfg(feature = "gpu")]
+use crate::gpu::GpuBackend;
 use crate::reference::Reference;
 use crate::scene::World;
 use crate::shader::Shade;
@@ -81,10 +84,101 @@ pub fn render(
     options: &RenderOptions<'_>,
 ) -> Result<Rendered, RenderError> {
     let start = Instant::now();
-    let side = options.check()?;
-    tables.check()?;
-    let world = scene.world()?;
-    let shader = open(backend, tables, &world, options)?;
+    // What is asked for is looked at before a device is opened for it.
+    options.check()?;
+    scene.world()?;
+    let rendered = Renderer::new(tables, backend)?.render(scene, options)?;
+    Ok(Rendered { seconds: start.elapsed().as_secs_f64(), ..rendered })
+}
+
+/// A back end that renders many scenes, or one scene many times: it keeps what they share, on the GPU the device with its
+/// tables and programs.
+pub struct Renderer<'a> {
+    tables: RenderTables<'a>,
+    backend: Backend,
+    #[cfg(feature = "gpu")]
+    device: Option<crate::gpu::Device>,
+}
+
+impl<'a> Renderer<'a> {
+    /// Opens it.
+    ///
+    /// # Errors
+    /// [`RenderError`] for tables of the wrong kind, and where there is no GPU for [`Backend::Gpu`].
+    pub fn new(tables: &RenderTables<'a>, backend: Backend) -> Result<Self, RenderError> {
+        tables.check()?;
+        #[cfg(feature = "gpu")]
+        let device = (backend == Backend::Gpu).then(|| crate::gpu::Device::open(tables)).transpose()?;
+        #[cfg(not(feature = "gpu"))]
+        if backend == Backend::Gpu {
+            return Err(RenderError::NoGpuBackend);
+        }
+        Ok(Self {
+            tables: *tables,
+            backend,
+            #[cfg(feature = "gpu")]
+            device,
+        })
+    }
+
+    /// Renders a scene.
+    ///
+    /// # Errors
+    /// [`RenderError`] for an invalid scene or option, and failures of the GPU.
+    pub fn render(&self, scene: &Scene, options: &RenderOptions<'_>) -> Result<Rendered, RenderError> {
+        self.frames(scene, options, |_| ControlFlow::Break(()))
+    }
+
+    /// Renders a scene again and again, until `each` has enough of it, and returns the last frame. What has to be made of a
+    /// scene before its first frame is made once.
+    ///
+    /// # Errors
+    /// As [`Self::render`].
+    pub fn frames(
+        &self,
+        scene: &Scene,
+        options: &RenderOptions<'_>,
+        mut each: impl FnMut(&Rendered) -> ControlFlow<()>,
+    ) -> Result<Rendered, RenderError> {
+        let mut start = Instant::now();
+        let side = options.check()?;
+        let world = scene.world()?;
+        let shader = self.shader(&world, options)?;
+        loop {
+            let rendered = frame(&world, &*shader, options, side, start)?;
+            if each(&rendered).is_break() {
+                return Ok(rendered);
+            }
+            start = Instant::now();
+        }
+    }
+
+    fn shader<'b>(
+        &'b self,
+        world: &'b World,
+        options: &RenderOptions<'_>,
+    ) -> Result<Box<dyn Shade + 'b>, RenderError> {
+        let lights = &world.lights;
+        #[cfg(feature = "gpu")]
+        if let Some(device) = &self.device {
+            return Ok(Box::new(GpuBackend::new(device, &self.tables, lights, &world.materials)?));
+        }
+        Ok(match self.backend {
+            Backend::Reference => {
+                Box::new(Reference { lights, samples: options.reference_samples, seed: options.seed })
+            }
+            _ => Box::new(Cpu { tables: &self.tables, lights, textures: prefiltered(lights)? }),
+        })
+    }
+}
+
+fn frame(
+    world: &World,
+    shader: &dyn Shade,
+    options: &RenderOptions<'_>,
+    side: u32,
+    start: Instant,
+) -> Result<Rendered, RenderError> {
     let (width, height) = (world.view.width(), world.view.height());
     let batch = u32::try_from(shader.batch()).unwrap_or(u32::MAX);
     let band = (batch / (width * options.samples_per_pixel)).max(1);
@@ -95,7 +189,7 @@ pub fn render(
     let mut row = 0;
     while row < height {
         let end = (row + band).min(height);
-        let buffer = GBuffer::cast(&world, row..end, side);
+        let buffer = GBuffer::cast(world, row..end, side);
         let before = Instant::now();
         let radiance = shader.shade(buffer.points())?;
         shading_seconds += before.elapsed().as_secs_f64();
@@ -111,25 +205,6 @@ pub fn render(
     let image = Image::new(width, height, pixels);
     let seconds = start.elapsed().as_secs_f64();
     Ok(Rendered { image, on_surface, seconds, shading_seconds, device: shader.device() })
-}
-
-fn open<'a>(
-    backend: Backend,
-    tables: &'a RenderTables<'a>,
-    world: &'a World,
-    options: &RenderOptions<'_>,
-) -> Result<Box<dyn Shade + 'a>, RenderError> {
-    let lights = &world.lights;
-    Ok(match backend {
-        #[cfg(feature = "gpu")]
-        Backend::Gpu => Box::new(crate::gpu::GpuBackend::open(tables, lights, &world.materials)?),
-        #[cfg(not(feature = "gpu"))]
-        Backend::Gpu => return Err(RenderError::NoGpuBackend),
-        Backend::Cpu => Box::new(Cpu { tables, lights, textures: prefiltered(lights)? }),
-        Backend::Reference => {
-            Box::new(Reference { lights, samples: options.reference_samples, seed: options.seed })
-        }
-    })
 }
 
 /// The lights' textures, one for each light.

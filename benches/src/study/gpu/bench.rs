@@ -47,8 +47,8 @@ pub struct Bench<'a> {
     pub programs: Vec<PixelProgram>,
     pub forms: Vec<Form>,
     pixels: Vec<(Materials, Vec<Pixel>, Resource)>,
-    /// Pixels that are judged.
-    judged: usize,
+    /// Pixels that are judged; none where forms are timed alone.
+    judged: Option<usize>,
 }
 
 /// What a program reads beside the scene.
@@ -61,11 +61,11 @@ pub struct Reads<'a> {
 }
 
 impl<'a> Bench<'a> {
-    /// An empty one; `judged` pixels of each form are held against the oracle.
+    /// An empty one; `judged` pixels of each form are held against the oracle, if any.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(gpu: &'a Gpu, [width, height]: [u32; 2], judged: usize) -> Result<Self, StudyError> {
+    pub fn new(gpu: &'a Gpu, [width, height]: [u32; 2], judged: Option<usize>) -> Result<Self, StudyError> {
         let grid = PixelGrid::new(gpu, width, height)?;
         Ok(Self { gpu, grid, programs: Vec::new(), forms: Vec::new(), pixels: Vec::new(), judged })
     }
@@ -79,8 +79,8 @@ impl<'a> Bench<'a> {
         let found = self.pixels.iter().find(|(m, ..)| *m == materials);
         // Pushed above, where it was not there.
         let (_, all, buffer) = found.ok_or_else(|| StudyError::Untimed("pixels".to_owned()))?;
-        let step = (all.len() / self.judged).max(1) | 1;
-        Ok((all.iter().step_by(step).copied().collect(), buffer.clone()))
+        let judged = self.judged.map(|judged| all.iter().step_by(step(all.len(), judged)).copied().collect());
+        Ok((judged.unwrap_or_default(), buffer.clone()))
     }
 
     /// Compiles a program under `gpu`, which is the bench's own device with tables in its way, once for each number of lights.
@@ -123,10 +123,10 @@ impl<'a> Bench<'a> {
             places.push(self.programs.len());
             self.programs.push(program);
         }
-        let errors = match (truth, places.last()) {
-            (Some((truth, bound)), Some(last)) => {
+        let errors = match (truth, places.last(), self.judged) {
+            (Some((truth, bound)), Some(last), Some(count)) => {
                 let pixels = self.programs[*last].pixels(gpu, &self.grid)?;
-                let step = (pixels.len() / self.judged).max(1) | 1;
+                let step = step(pixels.len(), count);
                 let found: Vec<[f32; 4]> = pixels.into_iter().step_by(step).collect();
                 Some(judge(name, &judged, &found, truth, bound)?)
             }
@@ -144,6 +144,11 @@ impl<'a> Bench<'a> {
     pub fn measure(&self, name: &str) -> Option<Measure> {
         self.forms.iter().find(|form| form.name == name).map(|form| form.measure)
     }
+}
+
+/// Every which pixel of `all` is judged, so that about `judged` are; odd, to meet all columns.
+fn step(all: usize, judged: usize) -> usize {
+    (all / judged.max(1)).max(1) | 1
 }
 
 /// Largest error and root mean square of what was found.

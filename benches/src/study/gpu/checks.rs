@@ -32,7 +32,7 @@ fn errors(
     truth: impl Fn(&LightShape, &Pixel) -> Result<f64, StudyError>,
 ) -> Result<[f64; 2], StudyError> {
     let (lights, points) = placed(kind, 2, sunk);
-    let mut bench = Bench::new(gpu, [160, 90], 4000)?;
+    let mut bench = Bench::new(gpu, [160, 90], Some(4000))?;
     let judge = |pixel: &Pixel| {
         let [first, second] = [truth(&lights[0], pixel)?, truth(&lights[1], pixel)?];
         Ok([None, Some(first), Some(second), Some(second)])
@@ -123,7 +123,7 @@ fn a_form_that_is_wrong_is_not_timed() -> Result<(), StudyError> {
     let planted = sound.replace("1.5707963 * square", "1.60 * square");
     assert_ne!(planted, sound);
     for (wgsl, good) in [(&sound, true), (&planted, false)] {
-        let mut bench = Bench::new(&gpu, [64, 36], 500)?;
+        let mut bench = Bench::new(&gpu, [64, 36], Some(500))?;
         let added = bench.add("quad", &gpu, Stage::Compute, wgsl, reads, &[1], Some((&truth, 1e-3)));
         assert_eq!(added.is_ok(), good, "{added:?}");
     }

@@ -7,6 +7,7 @@ use ltc_shade_gpu::{BakedSlices, Filtering, Gpu, LightKind, LightShape, TableTex
 use ltc_table::{Catalogue, Query, Table};
 
 use super::super::StudyError;
+use super::YARDSTICK;
 use super::bench::{Bench, Measure, Reads, lit, placed};
 use super::scene::{self, Materials, Pixel, reflectance};
 use super::sources::{self, BOTH_HORIZONS, Find, Integrate};
@@ -121,7 +122,7 @@ impl<'a> Forms<'a> {
         for (k, stage) in Stage::ALL.into_iter().enumerate() {
             if stage == Stage::Compute {
                 let (places, _) = self.bench.add(
-                    "yardstick",
+                    YARDSTICK,
                     gpu,
                     stage,
                     sources::YARDSTICK,
@@ -129,7 +130,7 @@ impl<'a> Forms<'a> {
                     &[0],
                     None,
                 )?;
-                self.bench.form("yardstick", Measure::Frame(places[0]), None);
+                self.bench.form(YARDSTICK, Measure::Frame(places[0]), None);
             } else if !self.extent.all {
                 break;
             }

@@ -19,19 +19,10 @@ use ltc_shade_gpu::timing::{PixelProgram, Turns, in_turns};
 use ltc_shade_gpu::{Filtering, Gpu, GpuOptions};
 use ltc_table::Catalogue;
 
+use super::timer::quotients;
 use super::{Interval, Plan, Record, StudyError};
-use bench::{Bench, Measure};
+use bench::{Bench, Form, Measure};
 use forms::{Extent, Forms};
-
-/// What was measured, and on what.
-pub struct OnDevice {
-    /// Forms and ratios.
-    pub records: Vec<Record>,
-    /// The device, its driver, and whether it is software.
-    pub device: String,
-    /// What told the times.
-    pub clock: String,
-}
 
 /// A picture's size and how much is timed over it.
 struct Picture {
@@ -59,16 +50,16 @@ fn pictures(plan: &Plan, software: bool) -> Vec<Picture> {
         name,
         size,
         extent: few,
-        turns: turns(2e6, 5, 9, 0),
-        budget: Duration::from_secs(5),
+        turns: turns(1e6, 3, 5, 0),
+        budget: Duration::from_secs(1),
         judged: 100,
     };
     let whole = |name, size| Picture {
         name,
         size,
         extent: Extent { all: true, few_many: [2, 8], counts: MANY },
-        turns: turns(1e6, 15, 201, 500),
-        budget: Duration::from_secs(60),
+        turns: turns(1e6, 5, 31, 500),
+        budget: Duration::from_secs(10),
         judged: 1000,
     };
     match (plan.quick, software) {
@@ -77,14 +68,14 @@ fn pictures(plan: &Plan, software: bool) -> Vec<Picture> {
         (false, false) => vec![whole("1080p", [1920, 1080]), whole("720p", [1280, 720])],
         (false, true) => vec![
             Picture {
-                turns: turns(4e6, 7, 51, 0),
-                budget: Duration::from_secs(150),
+                turns: turns(2e6, 3, 9, 0),
+                budget: Duration::from_secs(15),
                 ..whole("180p", [320, 180])
             },
             Picture {
                 extent: Extent { all: false, few_many: [1, 2], counts: &[1, 2, 4] },
-                turns: turns(1e6, 7, 9, 0),
-                budget: Duration::from_secs(150),
+                turns: turns(1e6, 1, 3, 0),
+                budget: Duration::from_secs(15),
                 judged: 1000,
                 ..whole("1080p", [1920, 1080])
             },
@@ -92,31 +83,74 @@ fn pictures(plan: &Plan, software: bool) -> Vec<Picture> {
     }
 }
 
-/// All figures of the best device there is; `Ok(Err)` with the reason where there is none.
+/// Errors of all forms on the best device there is, and what device that is; `Ok(Err)` with the reason where there is none.
 ///
 /// # Errors
 /// A form that is worse than it may be, a table that is missing, a device that fails.
-pub fn measure(
+pub fn errors(
     catalogue: &Catalogue,
     plan: &Plan,
     step: &dyn Fn(&str),
-) -> Result<Result<OnDevice, String>, StudyError> {
-    let gpu = match Gpu::new(GpuOptions { filtering: Filtering::Exact, ..GpuOptions::default() }) {
+) -> Result<Result<(Vec<Record>, String), String>, StudyError> {
+    let gpu = match open() {
         Ok(gpu) => gpu,
-        Err(reason) => return Ok(Err(reason.to_string())),
+        Err(reason) => return Ok(Err(reason)),
     };
-    let mut all = OnDevice { records: Vec::new(), device: gpu.info().to_string(), clock: String::new() };
+    let mut records = Vec::new();
     for picture in pictures(plan, gpu.info().software) {
-        let of = picture.name;
-        let say = |what: &str| step(&format!("{of} {what}"));
-        let bench = Bench::new(&gpu, picture.size, picture.judged)?;
+        let say = |what: &str| step(&format!("{} {what}", picture.name));
+        let bench = Bench::new(&gpu, picture.size, Some(picture.judged))?;
         let forms = Forms::new(bench, picture.extent, catalogue, &say)?;
-        say("in turns");
-        let (records, clock) = time(&forms.bench, &picture)?;
-        all.records.extend(records);
-        all.clock = clock;
+        for form in &forms.bench.forms {
+            let record = picture.record(form);
+            records.push(match form.errors {
+                Some([max, rms]) => record.error("max", max).error("rms", rms),
+                None => record,
+            });
+        }
     }
-    Ok(Ok(all))
+    Ok(Ok((records, gpu.info().to_string())))
+}
+
+/// Times of the same, ratios of them, and what told the times.
+///
+/// # Errors
+/// A table that is missing, a device that fails.
+pub fn times(
+    catalogue: &Catalogue,
+    plan: &Plan,
+) -> Result<Result<(Vec<Record>, String), String>, StudyError> {
+    let gpu = match open() {
+        Ok(gpu) => gpu,
+        Err(reason) => return Ok(Err(reason)),
+    };
+    let (mut records, mut told) = (Vec::new(), String::new());
+    for picture in pictures(plan, gpu.info().software) {
+        let bench = Bench::new(&gpu, picture.size, None)?;
+        let forms = Forms::new(bench, picture.extent, catalogue, &|_| {})?;
+        let (timed, clock) = time(&forms.bench, &picture)?;
+        records.extend(timed);
+        told = clock;
+    }
+    Ok(Ok((records, told)))
+}
+
+fn open() -> Result<Gpu, String> {
+    Gpu::new(GpuOptions { filtering: Filtering::Exact, ..GpuOptions::default() }).map_err(|e| e.to_string())
+}
+
+impl Picture {
+    /// With nothing measured yet.
+    fn record(&self, form: &Form) -> Record {
+        let id = match form.name.as_str() {
+            YARDSTICK => format!("yardstick/gpu/{}", self.name),
+            name => format!("gpu/{}/{name}", self.name),
+        };
+        Record::new(
+            id,
+            if matches!(form.measure, Measure::Slope { .. }) { "light of a frame" } else { "frame" },
+        )
+    }
 }
 
 /// Turns until every interval of a frame is within a hundredth of its median, or the time is up.
@@ -129,24 +163,21 @@ fn time(bench: &Bench<'_>, picture: &Picture) -> Result<(Vec<Record>, String), S
         start.elapsed() > picture.budget || samples.iter().all(narrow)
     };
     let (clock, samples) = in_turns(bench.gpu, &bench.grid, &programs, picture.turns, enough)?;
+    let yardstick = bench.measure(YARDSTICK).map(|measure| measure.nanoseconds(&samples));
     let mut records = Vec::new();
     for form in &bench.forms {
-        let id = match form.name.as_str() {
-            "yardstick" => format!("yardstick/gpu/{}", picture.name),
-            name => format!("gpu/{}/{name}", picture.name),
-        };
-        let per = if matches!(form.measure, Measure::Slope { .. }) { "light of a frame" } else { "frame" };
-        let time = Interval::of(form.measure.nanoseconds(&samples));
-        let mut record =
-            Record::new(id, per).timed(time.ok_or_else(|| StudyError::Untimed(form.name.clone()))?);
-        if let Some([max, rms]) = form.errors {
-            record = record.error("max", max).error("rms", rms);
-        }
-        records.push(record);
+        let times = form.measure.nanoseconds(&samples);
+        let relative = yardstick.as_ref().filter(|_| form.name != YARDSTICK);
+        let relative = relative.and_then(|yardstick| quotients(&times, yardstick));
+        let time = Interval::of(times).ok_or_else(|| StudyError::Untimed(form.name.clone()))?;
+        records.push(picture.record(form).timed(time).relative(relative));
     }
     records.extend(ratios::records(bench, &samples, picture.name));
     Ok((records, clock.to_string()))
 }
+
+/// The form that says how slow the device is.
+const YARDSTICK: &str = "yardstick";
 
 /// What a difference counts that noise has made negative, in nanoseconds.
 const LEAST: f64 = 1.0;

@@ -1,8 +1,9 @@
 //! What is asked of one form beside another, turn by turn: what slows the device down falls on both.
 
+use super::super::timer::quotients;
 use super::super::{Interval, Record};
-use super::LEAST;
 use super::bench::{Bench, Measure};
+use super::{LEAST, YARDSTICK};
 
 /// A ratio's name, what is above and what is below, and what it may be.
 type Asked = (&'static str, &'static str, &'static str, Option<f64>);
@@ -189,9 +190,13 @@ fn linear(bench: &Bench<'_>, samples: &[Vec<f64>], picture: &str) -> Vec<Record>
         })
         .collect();
     let id = |what: &str| format!("gpu/{picture}/compute/shade/isotropic/{what}");
-    let of = |value: fn(&Line) -> f64| Interval::of(lines.iter().map(value).collect());
-    let timed = |what: &str, per: &str, time: Option<Interval>| Some(Record::new(id(what), per).timed(time?));
-    let worst = of(|line| 1.0 + line.worst).map(|worst| {
+    let of = |value: fn(&Line) -> f64| -> Vec<f64> { lines.iter().map(value).collect() };
+    let yardstick = bench.measure(YARDSTICK).map(|measure| measure.nanoseconds(samples));
+    let timed = |what: &str, per: &str, times: Vec<f64>| {
+        let relative = yardstick.as_ref().and_then(|yardstick| quotients(&times, yardstick));
+        Some(Record::new(id(what), per).timed(Interval::of(times)?).relative(relative))
+    };
+    let worst = Interval::of(of(|line| 1.0 + line.worst)).map(|worst| {
         Record::new(format!("ratio/gpu/{picture}/lights_over_straight_line"), "ratio").ratio(worst, None)
     });
     [

@@ -5,7 +5,8 @@ use std::time::SystemTime;
 
 use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
-use ltc_benches::study::{self, Plan, Run, Step, Thresholds, Verdict};
+use ltc_benches::study::{self, Plan, Run, Session, Step, StudyError, Thresholds, Verdict};
+use ltc_table::Catalogue;
 use ltc_table::files::write_atomically;
 
 use super::bench_post::{How, Post};
@@ -46,6 +47,9 @@ pub struct Bench {
     post: Option<String>,
     #[command(flatten)]
     how: How,
+    /// What this program starts itself with to measure times in a process of their own: prints them as JSON, and nothing else.
+    #[arg(long, hide = true)]
+    session: bool,
 }
 
 #[derive(Subcommand)]
@@ -83,15 +87,24 @@ impl Bench {
             Some(Command::Post(post)) => return post.run(read),
             None => {}
         }
+        let date = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+        let (quick, device_only) = (self.quick, self.device_only);
+        let plan = Plan { quick, device_only, date, commit: self.commit.clone() };
+        let catalogue = tables.catalogue()?;
+        if self.session {
+            outln!("{}", serde_json::to_string(&study::session(&plan, &catalogue)?)?);
+            return Ok(());
+        }
+        self.measure(&plan, &catalogue)
+    }
+
+    fn measure(self, plan: &Plan, catalogue: &Catalogue) -> Result<()> {
         let destination = self.post.as_deref().map(|url| self.how.destination(url)).transpose()?;
         let folder = &self.output;
         std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-        let date = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
-        let plan = Plan { quick: self.quick, date, commit: self.commit };
         let reporter = Reporter::new();
         let observe = |step: Step<'_>| reporter.report(step.stage, step.done, step.total, "");
-        let measure = if self.device_only { study::run_on_device } else { study::run };
-        let run = measure(&plan, &tables.catalogue()?, &observe)?;
+        let run = study::run(plan, catalogue, &in_a_process_of_its_own, &observe)?;
         reporter.finish();
         let json = serde_json::to_string_pretty(&run)?;
         let (csv, page) = (study::csv(&run), study::page(&run));
@@ -145,7 +158,7 @@ impl Compare {
         }
         if let Some(drift) = comparison.drift {
             eprintln!(
-                "the machine as a whole: × {:.3} ({:.3} to {:.3}), divided out of lookups and integrals",
+                "the machine as a whole: × {:.3} ({:.3} to {:.3}), and nothing that was timed beside a yardstick is judged by it",
                 drift.median, drift.low, drift.high
             );
         }
@@ -177,6 +190,23 @@ impl Compare {
         outln!("nothing worse among {} figures", comparison.changes.len());
         Ok(())
     }
+}
+
+/// This program again, with the same arguments, to measure times alone.
+fn in_a_process_of_its_own() -> Result<Session, StudyError> {
+    let failed = |what: String| StudyError::Session(what);
+    let program = std::env::current_exe().map_err(|e| failed(e.to_string()))?;
+    let output = std::process::Command::new(program)
+        .args(std::env::args_os().skip(1))
+        .arg("--session")
+        .stdin(std::process::Stdio::null())
+        .output()
+        .map_err(|e| failed(e.to_string()))?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr);
+        return Err(failed(format!("{}: {}", output.status, said.trim())));
+    }
+    serde_json::from_slice(&output.stdout).map_err(|e| failed(e.to_string()))
 }
 
 fn write(path: &Path, text: &str) -> Result<()> {

@@ -38,6 +38,10 @@ fn a_quick_run_writes_a_page_and_what_dashboards_read() {
         assert_eq!(starts("gpu/") + starts("ratio/gpu/"), 0);
     }
     for record in records {
+        let id = record["id"].as_str().unwrap();
+        let beside = ["lookup/", "integral/", "gpu/"].iter().any(|group| id.starts_with(group))
+            || (id.starts_with("image/") && !id.ends_with("ltc_gpu"));
+        assert!(!beside || record["relative"]["median"].is_number(), "{id} was timed beside no yardstick");
         let times = ["low", "median", "high"].map(|k| record["time"][k].as_f64());
         if let [Some(low), Some(median), Some(high)] = times {
             assert!(0.0 < low && low <= median && median <= high, "{record}");
