@@ -15,12 +15,14 @@ const COUNT: usize = 20_000;
 /// For each way and table the largest error of a fraction that is allowed, and the largest root mean square. Exact
 /// interpolation is held to what the workspace promises between any two back ends; half floats to half as much again as was
 /// measured; texture units to what weights of 8 bits cost (below), though llvmpipe's have more.
-const BOUNDS: [(Filtering, Texels, [[f64; 2]; 2]); 5] = [
+const BOUNDS: [(Filtering, Texels, [[f64; 2]; 2]); 7] = [
     (Filtering::Buffer, Texels::F32, [[1e-4, 1e-6], [1e-4, 1e-6]]),
     (Filtering::Exact, Texels::F32, [[1e-4, 1e-6], [1e-4, 1e-6]]),
     (Filtering::Hardware, Texels::F32, [[1.2e-3, 3e-5], [4e-2, 3.5e-4]]),
     (Filtering::Exact, Texels::F16, [[1.8e-3, 6e-5], [3.6e-3, 6.5e-5]]),
     (Filtering::Hardware, Texels::F16, [[3e-3, 9e-5], [4e-2, 4e-4]]),
+    (Filtering::Refined, Texels::F32, [[1.2e-3, 3e-5], [4e-2, 6e-4]]),
+    (Filtering::Refined, Texels::F16, [[3e-3, 9e-5], [4e-2, 6e-4]]),
 ];
 
 /// Largest and root mean square error of the fractions of these lights, with their lobes looked up on the device.

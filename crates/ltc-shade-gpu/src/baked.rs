@@ -2,12 +2,11 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use glam::DMat3;
-use ltc_core::{Alpha, Matrix as _};
-use ltc_table::{ClosedForm, Kind, Precision, Query, Table, TableError, ktx2};
+use ltc_core::Alpha;
+use ltc_table::{ClosedForm, Kind, Query, Table, TableError, ktx2};
 
 use crate::layout::AxesUniform;
-use crate::table_textures::{Storage, View, check_extent, create, precision};
+use crate::table_textures::{Storage, View, check_extent, create, entry_bytes, precision};
 use crate::{Gpu, GpuError};
 
 /// What is left of an anisotropic table for materials whose widths do not change from point to point: for each pair of widths the
@@ -47,7 +46,7 @@ impl BakedSlices {
         check_extent(gpu, Kind::Isotropic, size)?;
         let slices: Vec<Vec<[f64; 12]>> =
             widths.iter().map(|alpha| slice(table, *alpha)).collect::<Result<_, _>>()?;
-        let bytes = bytes(precision(gpu), &slices)?;
+        let bytes = entry_bytes(precision(gpu), &slices)?;
         let texels = gpu.checked(|| Ok(create(gpu, Kind::Isotropic, size, &bytes)))?;
         let widths = widths.iter().map(|alpha| [alpha.x() as f32, alpha.y() as f32]).collect();
         Ok(Self { axes, texels, widths })
@@ -100,21 +99,4 @@ fn slice(table: &Table, alpha: Alpha) -> Result<Vec<[f64; 12]>, TableError> {
         Ok([a, b, c, d, e, f, g, h, i, n, f_term, table.closed_form().map_or(0.0, ClosedForm::code)])
     };
     views.map(entry).collect()
-}
-
-/// Groups of four channels one after the other, slices within each, in the layout of a table's texels.
-fn bytes(precision: Precision, slices: &[Vec<[f64; 12]>]) -> Result<Vec<u8>, GpuError> {
-    let mut bytes = Vec::new();
-    for group in 0..ktx2::GROUPS {
-        for entry in slices.iter().flatten() {
-            let rounded = entry.map(|x| precision.round(x));
-            let [m @ .., _, _, _] = rounded;
-            if DMat3::from_row_array(m).determinant() <= 0.0 {
-                let reason = "a slice's matrix loses its sign".to_owned();
-                return Err(GpuError::TableTexels { texels: precision.name(), reason });
-            }
-            rounded[4 * group..4 * group + 4].iter().for_each(|value| precision.put(*value, &mut bytes));
-        }
-    }
-    Ok(bytes)
 }

@@ -71,7 +71,7 @@ impl Gpu {
     ///
     /// # Errors
     /// [`GpuError::NoAdapter`] with what was tried, [`GpuError::UnknownBackend`], and [`GpuError::NotFilterable`]
-    /// for [`Filtering::Hardware`] on a device without it.
+    /// for [`Filtering::Hardware`] and [`Filtering::Refined`] on a device without it.
     pub fn new(options: GpuOptions) -> Result<Self, GpuError> {
         let backends = match options.backend {
             Some(name) => named(name)?,
@@ -175,7 +175,7 @@ impl Gpu {
 }
 
 fn can_filter(features: Features, filtering: Filtering, texels: Texels) -> bool {
-    let filters_f32 = filtering == Filtering::Hardware && texels == Texels::F32;
+    let filters_f32 = filtering.is_by_texture_unit() && texels == Texels::F32;
     !filters_f32 || features.contains(Features::FLOAT32_FILTERABLE)
 }
 

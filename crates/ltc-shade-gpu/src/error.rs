@@ -47,6 +47,9 @@ pub enum GpuError {
         /// What is lost.
         reason: String,
     },
+    /// A table was uploaded in a layout that the pipeline does not read.
+    #[error("the table was uploaded for another filtering than that of the pipeline")]
+    OtherFiltering,
     /// A table's axis is spaced in a way that the shaders do not know.
     #[error("the shaders know the mapping {mapping} for theta only, not for {quantity}")]
     UnsupportedAxis {

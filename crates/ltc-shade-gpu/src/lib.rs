@@ -66,6 +66,8 @@ mod lookup;
 pub mod modules;
 #[cfg(feature = "device")]
 mod probe;
+#[cfg(feature = "device")]
+mod refined;
 mod request;
 #[cfg(feature = "device")]
 mod shade;

@@ -30,8 +30,9 @@ macro_rules! module {
     };
 }
 
-/// All modules that are files. Beside them there are `constants`, `light_constants` and `table_constants`, generated from Rust, `edge`,
-/// which stands for `edge_exact` or `edge_rational`, and `quad`, for `quad_careful` or `quad_lean`.
+/// All modules that are files. Beside them there are `constants`, `light_constants` and `table_constants`, generated from Rust, and names
+/// of which a program chooses what they stand for: `edge` for `edge_exact` or `edge_rational`, `quad` for `quad_careful` or `quad_lean`,
+/// `fetch_filtered_anisotropic` for `fetch_hardware_anisotropic` or `fetch_refined_anisotropic`.
 pub const MODULES: &[Module] = &[
     module!(true, "math", []),
     module!(true, "precise", []),
@@ -73,12 +74,13 @@ pub const MODULES: &[Module] = &[
     module!(true, "fetch_hardware_isotropic", ["isotropic"]),
     module!(true, "fetch_hardware_anisotropic", ["anisotropic"]),
     module!(true, "fetch_hardware_baked", ["baked"]),
+    module!(true, "fetch_refined_anisotropic", ["anisotropic"]),
     module!(true, "fetch_function_isotropic", ["isotropic"]),
     module!(true, "fetch_function_anisotropic", ["anisotropic"]),
     module!(true, "fetch_function_baked", ["baked"]),
     module!(false, "tables_buffer", ["fetch_function_isotropic", "fetch_function_anisotropic"]),
     module!(false, "tables_exact", ["fetch_exact_isotropic", "fetch_exact_anisotropic"]),
-    module!(false, "tables_hardware", ["fetch_hardware_isotropic", "fetch_hardware_anisotropic"]),
+    module!(false, "tables_hardware", ["fetch_hardware_isotropic", "fetch_filtered_anisotropic"]),
     module!(false, "baked_buffer", ["fetch_function_baked", "tables_buffer"]),
     module!(false, "baked_exact", ["fetch_exact_baked", "tables_exact"]),
     module!(false, "baked_hardware", ["fetch_hardware_baked", "tables_hardware"]),
@@ -139,7 +141,7 @@ impl Program {
     /// Every program there is.
     pub fn all() -> Vec<Self> {
         let mut all = vec![Self::Integrate, Self::IntegrateTextured];
-        for filtering in [Filtering::Exact, Filtering::Hardware, Filtering::Buffer] {
+        for filtering in [Filtering::Exact, Filtering::Hardware, Filtering::Refined, Filtering::Buffer] {
             for baked in [false, true] {
                 all.push(Self::Lookup(filtering, Extras { textured: false, baked }));
                 for textured in [false, true] {
@@ -162,7 +164,7 @@ impl Program {
         };
         let (tables, baked) = match filtering {
             Filtering::Exact => ("tables_exact", "baked_exact"),
-            Filtering::Hardware => ("tables_hardware", "baked_hardware"),
+            Filtering::Hardware | Filtering::Refined => ("tables_hardware", "baked_hardware"),
             Filtering::Buffer => ("tables_buffer", "baked_buffer"),
         };
         let mut roots = vec![if extras.baked { baked } else { tables }];
@@ -173,12 +175,15 @@ impl Program {
 
     /// The whole WGSL text.
     pub fn source(self) -> String {
-        let extras = match self {
-            Self::Lookup(_, extras) | Self::Shade(_, extras) | Self::Forward(_, extras) => extras,
-            Self::IntegrateTextured => Extras { textured: true, baked: false },
-            Self::Integrate => Extras::default(),
+        let (filtering, extras) = match self {
+            Self::Lookup(filtering, extras)
+            | Self::Shade(filtering, extras)
+            | Self::Forward(filtering, extras) => (filtering, extras),
+            Self::IntegrateTextured => (Filtering::Exact, Extras { textured: true, baked: false }),
+            Self::Integrate => (Filtering::Exact, Extras::default()),
         };
         let mut symbols = OWN_SYMBOLS.to_vec();
+        symbols.extend((filtering == Filtering::Refined).then_some("refined"));
         symbols.extend(extras.textured.then_some("light_textures"));
         symbols.extend(extras.baked.then_some("baked"));
         compose(&self.roots(), &symbols)
@@ -187,7 +192,8 @@ impl Program {
 
 /// The text of the modules called `roots` and of all they need, each once, needed ones first. Names that are no
 /// module's are left out. Of `//#if WORD` … `//#else` … `//#endif` (or `//#ifnot WORD`) in a module, that part stays which
-/// `symbols` asks for; `rational_edges` and `lean_quads` choose what `edge` and `quad` stand for.
+/// `symbols` asks for; `rational_edges`, `lean_lights` and `refined` choose what `edge`, `quad` and
+/// `fetch_filtered_anisotropic` stand for.
 pub fn compose(roots: &[&str], symbols: &[&str]) -> String {
     let mut chosen = Vec::new();
     for root in roots {
@@ -202,6 +208,8 @@ fn resolve<'a>(name: &'a str, symbols: &[&str]) -> &'a str {
     match name {
         "edge" if symbols.contains(&"rational_edges") => "edge_rational",
         "edge" => "edge_exact",
+        "fetch_filtered_anisotropic" if symbols.contains(&"refined") => "fetch_refined_anisotropic",
+        "fetch_filtered_anisotropic" => "fetch_hardware_anisotropic",
         "quad" if symbols.contains(&"lean_lights") => "quad_lean",
         "quad" => "quad_careful",
         other => other,

@@ -80,6 +80,9 @@ pub enum Feature {
     /// Lookups by the texture unit, in fewer fetches and to its precision; without, by the shader in full. Of no effect with
     /// [`Feature::FunctionTables`].
     HardwareFiltering,
+    /// With [`Feature::HardwareFiltering`]: the anisotropic table has more nodes along λ, of which the nearest is taken, and the
+    /// texture unit interpolates all else: half the fetches, lobes off by half a step of λ at most ([`crate::Filtering::Refined`]).
+    Refined,
     /// Lookups call `ltc_isotropic_texel`, `ltc_anisotropic_texel` or `ltc_baked_texel`, which the host defines: over a storage buffer or
     /// whatever else holds a table where there are no float textures.
     FunctionTables,
@@ -107,11 +110,12 @@ pub enum Feature {
 
 impl Feature {
     /// Every feature there is.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Isotropic,
         Self::Anisotropic,
         Self::Baked,
         Self::HardwareFiltering,
+        Self::Refined,
         Self::FunctionTables,
         Self::SurfaceHorizon,
         Self::CosineHorizon,
@@ -134,6 +138,7 @@ impl Feature {
             Self::Anisotropic => "anisotropic",
             Self::Baked => "baked",
             Self::HardwareFiltering => "hardware-filtering",
+            Self::Refined => "refined",
             Self::FunctionTables => "function-tables",
             Self::SurfaceHorizon => "surface-horizon",
             Self::CosineHorizon => "cosine-horizon",
@@ -156,6 +161,9 @@ impl Feature {
             Self::Anisotropic => "lookup in a table for anisotropic materials",
             Self::Baked => "lookup in slices of an anisotropic table, each baked for one pair of widths",
             Self::HardwareFiltering => "lookups by the texture unit, faster and to its precision",
+            Self::Refined => {
+                "with hardware-filtering, an anisotropic table of finer lambda: half the fetches"
+            }
             Self::FunctionTables => "lookups call a function of yours for each texel, over any memory",
             Self::SurfaceHorizon => "cuts lights at the surface's horizon: nothing leaks from below",
             Self::CosineHorizon => "cuts lights at the horizon of cosine space",
@@ -252,6 +260,13 @@ impl ShaderRequest {
         self.features.contains(&feature)
     }
 
+    /// Whether it looks into a table of finer λ.
+    pub(crate) fn is_refined(&self) -> bool {
+        self.has(Feature::Refined)
+            && self.has(Feature::HardwareFiltering)
+            && !self.has(Feature::FunctionTables)
+    }
+
     /// Whether it looks into a table.
     pub(crate) fn looks_up(&self) -> bool {
         Feature::LOOKUPS.into_iter().any(|feature| self.has(feature))
@@ -265,6 +280,8 @@ impl ShaderRequest {
     /// The modules to begin with.
     pub(crate) fn roots(&self) -> Vec<&'static str> {
         let mut roots = Vec::new();
+        let filtered_anisotropic =
+            if self.is_refined() { "fetch_refined_anisotropic" } else { "fetch_hardware_anisotropic" };
         let way = match (self.has(Feature::FunctionTables), self.has(Feature::HardwareFiltering)) {
             (true, _) => 2,
             (false, true) => 1,
@@ -277,7 +294,7 @@ impl ShaderRequest {
             ),
             (
                 Feature::Anisotropic,
-                ["fetch_exact_anisotropic", "fetch_hardware_anisotropic", "fetch_function_anisotropic"],
+                ["fetch_exact_anisotropic", filtered_anisotropic, "fetch_function_anisotropic"],
             ),
             (Feature::Baked, ["fetch_exact_baked", "fetch_hardware_baked", "fetch_function_baked"]),
         ] {
@@ -345,6 +362,8 @@ impl ShaderRequest {
                 list.push(Self::new([], tables.iter().copied().chain([way])));
             }
         }
+        let refined = [Feature::Anisotropic, Feature::HardwareFiltering, Feature::Refined];
+        list.push(Self::new([], refined));
         list.extend(
             [Feature::Textured, Feature::Fresnel, Feature::Material, Feature::Frame]
                 .map(|feature| Self::new([], [feature])),

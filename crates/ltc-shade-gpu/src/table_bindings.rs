@@ -19,7 +19,7 @@ pub(crate) struct TableBindings {
 
 impl TableBindings {
     pub fn new(gpu: &Gpu, extras: Extras) -> Result<Self, GpuError> {
-        let hardware = gpu.filtering() == Filtering::Hardware;
+        let hardware = gpu.filtering().is_by_texture_unit();
         let mut entries = vec![
             entry(0, UNIFORM),
             entry(1, texels(gpu, Kind::Isotropic)),
@@ -55,6 +55,10 @@ impl TableBindings {
         tables: Tables<'_>,
         textures: Option<&LightTextures>,
     ) -> Result<BindGroup, GpuError> {
+        let refined = gpu.filtering() == Filtering::Refined;
+        if tables.anisotropic.is_some_and(|table| table.is_refined() != refined) {
+            return Err(GpuError::OtherFiltering);
+        }
         gpu.checked(|| {
             let [flat, full] =
                 [Kind::Isotropic, Kind::Anisotropic].map(|kind| Storage::placeholder(gpu, kind));
@@ -81,7 +85,7 @@ impl TableBindings {
                 [bound(first, axes[k].as_entire_binding()), bound(first + 1, held[k].1.binding())]
             };
             let mut entries: Vec<_> = [pair(0, 0), pair(2, 1)].into_iter().flatten().collect();
-            if gpu.filtering() == Filtering::Hardware {
+            if gpu.filtering().is_by_texture_unit() {
                 entries.push(bound(4, wgpu::BindingResource::Sampler(&sampler)));
             }
             let textures = textures.map(LightTextures::view);
@@ -115,7 +119,7 @@ fn texels(gpu: &Gpu, kind: Kind) -> wgpu::BindingType {
             min_binding_size: None,
         },
         filtering => wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: filtering == Filtering::Hardware },
+            sample_type: wgpu::TextureSampleType::Float { filterable: filtering.is_by_texture_unit() },
             view_dimension: view_dimension(kind),
             multisampled: false,
         },

@@ -1,10 +1,13 @@
 //! Tables as textures.
 
+use glam::DMat3;
+use ltc_core::Matrix as _;
 use ltc_table::{Kind, Precision, Table, ktx2};
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
 use wgpu::{Texture, TextureDimension, TextureViewDimension};
 
 use crate::layout::AxesUniform;
+use crate::refined::Refined;
 use crate::{BakedSlices, Filtering, Gpu, GpuError, Texels};
 
 /// A table on the device: three RGBA groups in the layout of [`ltc_table::ktx2`], and its axes.
@@ -13,6 +16,7 @@ pub struct TableTextures {
     kind: Kind,
     axes: AxesUniform,
     texels: Storage,
+    refined: bool,
 }
 
 /// Where texels are.
@@ -88,12 +92,18 @@ impl TableTextures {
     /// [`GpuError::TableTexels`] where 16 bits cannot hold it,
     /// [`GpuError::Device`].
     pub fn upload(gpu: &Gpu, table: &Table) -> Result<Self, GpuError> {
-        let axes = AxesUniform::of(table)?;
-        let size = extent(table);
-        check_extent(gpu, table.kind(), size)?;
-        let bytes = texel_bytes(precision(gpu), table)?;
-        let texels = gpu.checked(|| Ok(create(gpu, table.kind(), size, &bytes)))?;
-        Ok(Self { kind: table.kind(), axes, texels })
+        let (kind, axes) = (table.kind(), AxesUniform::of(table)?);
+        let layers = gpu.device().limits().max_texture_dimension_3d as usize;
+        let precision = precision(gpu);
+        let refined =
+            (gpu.filtering() == Filtering::Refined).then(|| Refined::of(table, precision, layers)).flatten();
+        let (size, bytes) = match &refined {
+            Some(refined) => (refined.extent(), entry_bytes(precision, &refined.slices)?),
+            None => (extent(table), texel_bytes(precision, table)?),
+        };
+        check_extent(gpu, kind, size)?;
+        let texels = gpu.checked(|| Ok(create(gpu, kind, size, &bytes)))?;
+        Ok(Self { kind, axes, texels, refined: refined.is_some() })
     }
 
     /// The uniform `LtcAxes` of a table, for hosts that hold its texels elsewhere.
@@ -112,6 +122,11 @@ impl TableTextures {
     /// Bytes of memory on the device.
     pub fn bytes(&self) -> u64 {
         self.texels.bytes()
+    }
+
+    /// Whether it is in the layout of [`Filtering::Refined`], which the isotropic table shares with [`Filtering::Hardware`].
+    pub(crate) fn is_refined(&self) -> bool {
+        self.refined
     }
 
     pub(crate) fn axes(&self) -> AxesUniform {
@@ -143,6 +158,31 @@ fn texel_bytes(precision: Precision, table: &Table) -> Result<Vec<u8>, GpuError>
     let mut bytes = Vec::new();
     ktx2::texels(table).iter().flatten().for_each(|value| precision.put(*value, &mut bytes));
     Ok(bytes)
+}
+
+/// Groups of four channels one after the other, slices within each, in the layout of a table's texels.
+pub(crate) fn entry_bytes(precision: Precision, slices: &[Vec<[f64; 12]>]) -> Result<Vec<u8>, GpuError> {
+    let mut bytes = Vec::new();
+    for group in 0..ktx2::GROUPS {
+        for entry in slices.iter().flatten() {
+            let rounded = entry.map(|x| precision.round(x));
+            let [m @ .., _, _, _] = rounded;
+            if DMat3::from_row_array(m).determinant() <= 0.0 {
+                let reason = "a matrix loses its sign".to_owned();
+                return Err(GpuError::TableTexels { texels: precision.name(), reason });
+            }
+            rounded[4 * group..4 * group + 4].iter().for_each(|value| precision.put(*value, &mut bytes));
+        }
+    }
+    Ok(bytes)
+}
+
+impl Refined {
+    fn extent(&self) -> wgpu::Extent3d {
+        let [width, height, thetas] = self.nodes.map(|len| len as u32);
+        let depth = thetas * (self.slices.len() * ktx2::GROUPS) as u32;
+        wgpu::Extent3d { width, height, depth_or_array_layers: depth }
+    }
 }
 
 fn extent(table: &Table) -> wgpu::Extent3d {

@@ -23,6 +23,19 @@ const RATIOS: &[Asked] = &[
         "compute/lookup/isotropic/texture_f32",
         Some(1.5),
     ),
+    // Materials whose widths do: all but their ratio is interpolated by the texture unit, as the isotropic table is.
+    (
+        "anisotropic_refined_over_isotropic_lookup",
+        "compute/lookup/anisotropic/refined_f32",
+        "compute/lookup/isotropic/filtered_f32",
+        Some(1.5),
+    ),
+    (
+        "anisotropic_refined_over_isotropic_lookup_f16",
+        "compute/lookup/anisotropic/refined_f16",
+        "compute/lookup/isotropic/filtered_f16",
+        Some(1.5),
+    ),
     ("line_over_quad", "compute/integral/line/exact", "compute/integral/quad/exact", Some(0.5)),
     ("quad_over_published", "compute/integral/quad/exact", "compute/integral/quad/published_2016", Some(1.0)),
     ("lean_line_over_lean_quad", "compute/integral/line/lean", "compute/integral/quad/lean", Some(0.5)),

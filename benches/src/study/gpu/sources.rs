@@ -70,12 +70,12 @@ impl Find {
         match self {
             Self::Isotropic(filtering) | Self::Anisotropic(filtering) => match filtering {
                 Filtering::Exact => &["tables_exact", "lobe"],
-                Filtering::Hardware => &["tables_hardware", "lobe"],
+                Filtering::Hardware | Filtering::Refined => &["tables_hardware", "lobe"],
                 Filtering::Buffer => &["tables_buffer", "lobe"],
             },
             Self::Baked(filtering) => match filtering {
                 Filtering::Exact => &["baked_exact", "lobe"],
-                Filtering::Hardware => &["baked_hardware", "lobe"],
+                Filtering::Hardware | Filtering::Refined => &["baked_hardware", "lobe"],
                 Filtering::Buffer => &["baked_buffer", "lobe"],
             },
             Self::Formula => &["lobe"],
@@ -83,6 +83,11 @@ impl Find {
             Self::AnisotropicArithmetic => &["fetch_function_anisotropic", "lobe"],
             _ => &[],
         }
+    }
+
+    /// What they are composed with.
+    fn symbols(self) -> &'static [&'static str] {
+        if self == Self::Anisotropic(Filtering::Refined) { &["refined"] } else { &[] }
     }
 
     fn text(self) -> String {
@@ -230,7 +235,7 @@ impl Integrate {
 
 /// A lookup alone, and the inverse that lights need.
 pub fn lookup(find: Find) -> String {
-    let modules = compose(find.modules(), &[]);
+    let modules = compose(find.modules(), find.symbols());
     format!("{modules}\n{SCENE}\n{}\n{}", find.text(), include_str!("wgsl/pixel_lookup.wgsl"))
 }
 
@@ -239,7 +244,7 @@ pub fn lights(find: Find, integrate: Integrate) -> String {
     debug_assert!(find.is_published() || !matches!(integrate, Integrate::PublishedQuad), "{find:?}");
     let mut roots = find.modules().to_vec();
     roots.extend(integrate.modules());
-    let modules = compose(&roots, integrate.symbols());
+    let modules = compose(&roots, &[find.symbols(), integrate.symbols()].concat());
     format!(
         "{modules}\n{SCENE}\n{}\n{}\n{}",
         find.text(),

@@ -82,7 +82,13 @@ fn tables(request: &ShaderRequest) -> Vec<String> {
             "  isotropic: 2D array, x = {alpha} node, y = {theta} node, layer = group; LtcAxes has {theta} and {alpha}."
         ));
     }
-    if request.has(Feature::Anisotropic) {
+    if request.has(Feature::Anisotropic) && request.is_refined() {
+        lines.push(format!("  anisotropic: 3D, x = {alpha} node, y = {phi} node,"));
+        lines.push(format!(
+            "    z = {theta} node + len({theta}) * ({lambda} step + steps * group), with linear interpolation to a whole"
+        ));
+        lines.push(format!("    number of steps a cell of {lambda}; LtcAxes as for the table itself."));
+    } else if request.has(Feature::Anisotropic) {
         lines.push(format!("  anisotropic: 3D, x = {lambda} node, y = {alpha} node,"));
         lines.push(format!("    z = {phi} node + len({phi}) * ({theta} node + len({theta}) * group)."));
     }

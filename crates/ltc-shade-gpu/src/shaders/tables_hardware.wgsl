@@ -1,4 +1,4 @@
-// Bindings of the tables, interpolated by the texture unit. Needs: isotropic, anisotropic, fetch_hardware_isotropic, fetch_hardware_anisotropic.
+// Bindings of the tables, interpolated by the texture unit. Needs: isotropic, anisotropic, fetch_hardware_isotropic, fetch_filtered_anisotropic.
 
 @group(0) @binding(0) var<uniform> isotropic_axes: LtcAxes;
 @group(0) @binding(1) var isotropic_table: texture_2d_array<f32>;

@@ -35,7 +35,7 @@ fn texels(library: &str, four: &str) -> String {
 fn classes() -> Vec<ShaderRequest> {
     let mut list = ShaderRequest::permutations();
     list.retain(|request| request.lights.len() != 1 || [0, 4].contains(&request.features.len()));
-    assert_eq!(list.len(), 68);
+    assert_eq!(list.len(), 69);
     list
 }
 

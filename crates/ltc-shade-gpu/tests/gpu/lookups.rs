@@ -119,6 +119,60 @@ fn hardware_filtering_is_as_near_as_its_weights_allow() {
     assert!(error <= HARDWARE_TOLERANCE, "{error}");
 }
 
+/// The query whose λ is the nearest node of `nodes` evenly spaced ones along its axis; φ as it is for the table's quadrant.
+fn with_nearest_lambda(table: &Table, nodes: usize, query: &Query) -> Query {
+    let [.., axis] = table.axes() else { panic!("no axes") };
+    let [low, high] = axis.domain.map(|x| axis.mapping.coordinate(x));
+    let (larger, smaller) = (query.alpha_x.max(query.alpha_y), query.alpha_x.min(query.alpha_y));
+    let cells = (nodes - 1) as f64;
+    let place = (axis.mapping.coordinate(smaller / larger) - low) / (high - low) * cells;
+    let nearest = larger * axis.mapping.value(low + place.round().clamp(0.0, cells) / cells * (high - low));
+    if query.alpha_x < query.alpha_y {
+        Query { alpha_x: nearest, ..*query }
+    } else {
+        Query { alpha_y: nearest, ..*query }
+    }
+}
+
+#[test]
+fn a_refined_table_is_the_table_at_the_nearest_lambda() {
+    let Some(gpu) = gpu(Filtering::Refined) else { return };
+    // Widths so small that the table's own clamp of α decides are left to the other tests: λ is of what is clamped.
+    let wide = |q: &Query| q.alpha_x.min(q.alpha_y) > 0.01;
+    let queries: Vec<Query> = anisotropic_queries(10_000).into_iter().filter(wide).collect();
+    for (name, table) in all_tables() {
+        let cells = table.shape()[3] - 1;
+        let results = on_gpu(&gpu, &table, &queries);
+        let nearest: Vec<Query> =
+            queries.iter().map(|q| with_nearest_lambda(&table, 16 * cells + 1, q)).collect();
+        // Half way between two nodes, rounding decides which it is.
+        let off = queries.iter().zip(&nearest).zip(&results).filter(|((query, nearest), result)| {
+            let at = |q: &Query| largest_error(&table, &[*q], std::slice::from_ref(result));
+            at(nearest) > HARDWARE_TOLERANCE && at(query) > HARDWARE_TOLERANCE
+        });
+        let off = off.count();
+        println!("anisotropic, {name}, refined: {off} of {} off", queries.len());
+        assert!(off <= queries.len() / 1000, "{name}: {off}");
+        // The control: it is not the table at λ itself, where that changes along λ.
+        assert!(largest_error(&table, &queries, &results) > 1e-3, "{name}");
+    }
+    let (table, queries) = (tables::isotropic(), isotropic_queries(1000));
+    assert!(largest_error(&table, &queries, &on_gpu(&gpu, &table, &queries)) <= HARDWARE_TOLERANCE);
+}
+
+#[test]
+fn a_table_of_another_layout_is_refused() {
+    let Some(refined) = gpu(Filtering::Refined) else { return };
+    let table = tables::anisotropic(Mapping::Linear, Mapping::Linear);
+    let query = Query { theta: 0.3, phi: 0.1, alpha_x: 0.5, alpha_y: 0.2 };
+    let other = refined.with_tables(Filtering::Hardware, refined.texels()).unwrap();
+    for (of, by) in [(&refined, &other), (&other, &refined)] {
+        let textures = TableTextures::upload(of, &table).unwrap();
+        let error = Lookups::new(by).unwrap().lookup(by, &textures, &[query]).unwrap_err();
+        assert!(matches!(error, GpuError::OtherFiltering), "{error}");
+    }
+}
+
 #[test]
 fn a_wrong_fold_is_seen() {
     // The control: without the folds of phi and alpha the results would be those of other queries.
