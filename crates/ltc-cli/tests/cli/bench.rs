@@ -33,7 +33,7 @@ fn a_quick_run_writes_a_page_and_what_dashboards_read() {
     if run["machine"]["gpu"].is_string() {
         assert!(starts("gpu/") > 20 && starts("ratio/gpu/") > 10 && starts("yardstick/gpu/") == 1);
         assert!(run["machine"]["gpu_clock"].is_string());
-        assert_eq!(records.iter().filter(|r| r["asked"].is_number()).count(), 6);
+        assert_eq!(records.iter().filter(|r| r["asked"].is_number()).count(), 8);
     } else {
         assert_eq!(starts("gpu/") + starts("ratio/gpu/"), 0);
     }
