@@ -52,10 +52,11 @@ struct LtcSegment {
     int _end_pad_1;
 };
 
+// What is left of a segment above the horizons, in cosine space.
 struct LtcKept {
-    float3 p0;
+    float3 q0;
     int _pad1_0;
-    float3 p1;
+    float3 q1;
     float share;
 };
 
@@ -318,8 +319,8 @@ float3 ltc_towards_line(LtcSegment segment)
 
 LtcKept ConstructLtcKept(float3 arg0, float3 arg1, float arg2) {
     LtcKept ret = (LtcKept)0;
-    ret.p0 = arg0;
-    ret.p1 = arg1;
+    ret.q0 = arg0;
+    ret.q1 = arg1;
     ret.share = arg2;
     return ret;
 }
@@ -336,6 +337,25 @@ LtcKept ltc_clip_above(float3 p0, float3 p1, float3 moment)
     float share = ((max(p0.z, p1.z) <= 0.0) ? 0.0 : (crosses ? kept : 1.0));
     const LtcKept ltckept = ConstructLtcKept(((sunk.x & crosses) ? crossing : p0), ((sunk.y & crosses) ? crossing : p1), share);
     return ltckept;
+}
+
+// `moment` is that of the whole segment in cosine space.
+LtcKept ltc_kept(LtcSegment segment, LtcLobe lobe, float3 moment)
+{
+    LtcKept kept = (LtcKept)0;
+
+    kept = ConstructLtcKept(segment.p0, segment.p1, 1.0);
+    const LtcKept _e13 = ltc_clip_above(segment.p0, segment.p1, (segment.normal * segment.moment));
+    kept = _e13;
+    float3 _e15 = kept.q0;
+    const float3 _e16 = ltc_cosine_from_target(lobe, _e15);
+    float3 _e18 = kept.q1;
+    const float3 _e19 = ltc_cosine_from_target(lobe, _e18);
+    float _e21 = kept.share;
+    kept = ConstructLtcKept(_e16, _e19, _e21);
+    LtcKept _e23 = kept;
+    const LtcKept ltckept_1 = _e23;
+    return ltckept_1;
 }
 
 // A length whose square may underflow.
@@ -374,7 +394,8 @@ float ltc_cosine_along(float3 q0, float3 q1, float sine, float nearness)
     float _e39 = near.x;
     float _e42 = near.y;
     float unit_sine = ((sine * _e39) * _e42);
-    float half_tangent = ((cosine >= 0.0) ? (unit_sine / (1.0 + cosine)) : ((1.0 - cosine) / unit_sine));
+    bool acute = (cosine >= 0.0);
+    float half_tangent = ((acute ? unit_sine : (1.0 - cosine)) / (acute ? (1.0 + cosine) : unit_sine));
     float _e55 = near.x;
     float _e59 = near.y;
     float _e64 = near.x;
@@ -382,9 +403,9 @@ float ltc_cosine_along(float3 q0, float3 q1, float sine, float nearness)
     float ends = ((half_tangent * ((q0.z * _e55) + (q1.z * _e59))) * (_e64 + _e66));
     float x = abs(cosine);
     float g = (((((0.084654704 * x) + 0.5184987) * x) + 0.5707963) / ((((((0.088782445 * x) + 0.7727517) * x) + 1.6603152) * x) + 1.0));
-    float acute = (((unit_sine * unit_sine) * half_tangent) * g);
-    float obtuse = (LTC_PI - (unit_sine * (2.0 + ((1.0 - x) * g))));
-    return ((nearness * ((cosine >= 0.0) ? acute : obtuse)) + ends);
+    float less = (((unit_sine * unit_sine) * half_tangent) * g);
+    float rest = (LTC_PI - (unit_sine * (2.0 + ((1.0 - x) * g))));
+    return ((nearness * (acute ? less : rest)) + ends);
 }
 
 // The integral of D(w) |w x w_t| / |p|^2 dl along the segment, per scaled length: half of eq. 1.6. Of what is above the
@@ -392,11 +413,6 @@ float ltc_cosine_along(float3 q0, float3 q1, float sine, float nearness)
 float ltc_segment_integral(LtcSegment segment, LtcLobe lobe)
 {
     bool local_2 = (bool)0;
-    float share = 1.0;
-    float3 p0 = (float3)0;
-    float3 p1 = (float3)0;
-    float3 q0 = (float3)0;
-    float3 q1 = (float3)0;
 
     if (segment.valid) {
         local_2 = lobe.valid;
@@ -407,34 +423,18 @@ float ltc_segment_integral(LtcSegment segment, LtcLobe lobe)
     if (!(_e7)) {
         return 0.0;
     }
-    p0 = segment.p0;
-    p1 = segment.p1;
-    float3 _e16 = p0;
-    float3 _e17 = p1;
-    const LtcKept _e21 = ltc_clip_above(_e16, _e17, (segment.normal * segment.moment));
-    share = _e21.share;
-    p0 = _e21.p0;
-    p1 = _e21.p1;
-    const float3 _e26 = ltc_cosine_normal(lobe, segment.normal);
-    float squared_width = dot(_e26, _e26);
+    const float3 _e11 = ltc_cosine_normal(lobe, segment.normal);
+    float squared_width = dot(_e11, _e11);
     float stretch = (segment.moment * lobe.area_scale);
-    float3 _e31 = p0;
-    const float3 _e32 = ltc_cosine_from_target(lobe, _e31);
-    q0 = _e32;
-    float3 _e34 = p1;
-    const float3 _e35 = ltc_cosine_from_target(lobe, _e34);
-    q1 = _e35;
-    const float3 _e40 = ltc_cosine_from_target(lobe, (segment.p1 - segment.p0));
-    float nearness = ((((_e40.x * _e26.y) - (_e40.y * _e26.x)) / squared_width) / stretch);
-    float _e50 = share;
-    float sine = ((_e50 * stretch) * sqrt(squared_width));
+    const float3 _e19 = ltc_cosine_from_target(lobe, (segment.p1 - segment.p0));
+    const LtcKept _e21 = ltc_kept(segment, lobe, (_e11 * stretch));
+    float nearness = ((((_e19.x * _e11.y) - (_e19.y * _e11.x)) / squared_width) / stretch);
+    float sine = ((_e21.share * stretch) * sqrt(squared_width));
     float stretched = (sqrt((dot(segment.normal, segment.normal) / squared_width)) * lobe.determinant_);
-    float3 _e61 = q0;
-    float3 _e62 = q1;
-    const float _e63 = ltc_cosine_along(_e61, _e62, sine, nearness);
-    float integral = ((stretched * _e63) / 6.2831855);
-    float _e67 = share;
-    return (((((_e67 > 0.0) & (squared_width > 0.0)) & (stretch > 0.0)) & (sine > 0.0)) ? integral : 0.0);
+    const float _e44 = ltc_cosine_along(_e21.q0, _e21.q1, sine, nearness);
+    float integral = ((stretched * _e44) * 0.15915494);
+    bool valid = (((segment.valid & lobe.valid) & (squared_width > 0.0)) & (stretch > 0.0));
+    return (((valid & (_e21.share > 0.0)) & (sine > 0.0)) ? integral : 0.0);
 }
 
 float ltc_line_unclamped(LtcLobe lobe, float3 p0, float3 p1, float radius)

@@ -48,9 +48,10 @@ struct LtcSegment {
     bool valid;
     char _pad6[11];
 };
+// What is left of a segment above the horizons, in cosine space.
 struct LtcKept {
-    metal::float3 p0;
-    metal::packed_float3 p1;
+    metal::float3 q0;
+    metal::packed_float3 q1;
     float share;
 };
 constant float LTC_PI = 3.1415927;
@@ -319,6 +320,26 @@ LtcKept ltc_clip_above(
     return LtcKept {(sunk.x & crosses) ? crossing : p0, (sunk.y & crosses) ? crossing : p1, share};
 }
 
+// `moment` is that of the whole segment in cosine space.
+LtcKept ltc_kept(
+    LtcSegment segment,
+    LtcLobe lobe,
+    metal::float3 moment
+) {
+    LtcKept kept = {};
+    kept = LtcKept {segment.p0, segment.p1, 1.0};
+    LtcKept _e13 = ltc_clip_above(segment.p0, segment.p1, segment.normal * segment.moment);
+    kept = _e13;
+    metal::float3 _e15 = kept.q0;
+    metal::float3 _e16 = ltc_cosine_from_target(lobe, _e15);
+    metal::float3 _e18 = kept.q1;
+    metal::float3 _e19 = ltc_cosine_from_target(lobe, _e18);
+    float _e21 = kept.share;
+    kept = LtcKept {_e16, _e19, _e21};
+    LtcKept _e23 = kept;
+    return _e23;
+}
+
 // A length whose square may underflow.
 float ltc_length(
     metal::float3 v
@@ -359,7 +380,8 @@ float ltc_cosine_along(
     float _e39 = near.x;
     float _e42 = near.y;
     float unit_sine = (sine * _e39) * _e42;
-    float half_tangent = (cosine >= 0.0) ? (unit_sine / (1.0 + cosine)) : ((1.0 - cosine) / unit_sine);
+    bool acute = cosine >= 0.0;
+    float half_tangent = (acute ? unit_sine : (1.0 - cosine)) / (acute ? (1.0 + cosine) : unit_sine);
     float _e55 = near.x;
     float _e59 = near.y;
     float _e64 = near.x;
@@ -367,9 +389,9 @@ float ltc_cosine_along(
     float ends = (half_tangent * ((q0.z * _e55) + (q1.z * _e59))) * (_e64 + _e66);
     float x = metal::abs(cosine);
     float g = ((((0.084654704 * x) + 0.5184987) * x) + 0.5707963) / ((((((0.088782445 * x) + 0.7727517) * x) + 1.6603152) * x) + 1.0);
-    float acute = ((unit_sine * unit_sine) * half_tangent) * g;
-    float obtuse = LTC_PI - (unit_sine * (2.0 + ((1.0 - x) * g)));
-    return (nearness * ((cosine >= 0.0) ? acute : obtuse)) + ends;
+    float less = ((unit_sine * unit_sine) * half_tangent) * g;
+    float rest = LTC_PI - (unit_sine * (2.0 + ((1.0 - x) * g)));
+    return (nearness * (acute ? less : rest)) + ends;
 }
 
 // The integral of D(w) |w x w_t| / |p|^2 dl along the segment, per scaled length: half of eq. 1.6. Of what is above the
@@ -379,11 +401,6 @@ float ltc_segment_integral(
     LtcLobe lobe
 ) {
     bool local_2 = {};
-    float share = 1.0;
-    metal::float3 p0 = {};
-    metal::float3 p1 = {};
-    metal::float3 q0 = {};
-    metal::float3 q1 = {};
     if (segment.valid) {
         local_2 = lobe.valid;
     } else {
@@ -393,34 +410,18 @@ float ltc_segment_integral(
     if (!(_e7)) {
         return 0.0;
     }
-    p0 = segment.p0;
-    p1 = segment.p1;
-    metal::float3 _e16 = p0;
-    metal::float3 _e17 = p1;
-    LtcKept _e21 = ltc_clip_above(_e16, _e17, segment.normal * segment.moment);
-    share = _e21.share;
-    p0 = _e21.p0;
-    p1 = _e21.p1;
-    metal::float3 _e26 = ltc_cosine_normal(lobe, segment.normal);
-    float squared_width = metal::dot(_e26, _e26);
+    metal::float3 _e11 = ltc_cosine_normal(lobe, segment.normal);
+    float squared_width = metal::dot(_e11, _e11);
     float stretch = segment.moment * lobe.area_scale;
-    metal::float3 _e31 = p0;
-    metal::float3 _e32 = ltc_cosine_from_target(lobe, _e31);
-    q0 = _e32;
-    metal::float3 _e34 = p1;
-    metal::float3 _e35 = ltc_cosine_from_target(lobe, _e34);
-    q1 = _e35;
-    metal::float3 _e40 = ltc_cosine_from_target(lobe, segment.p1 - segment.p0);
-    float nearness = (((_e40.x * _e26.y) - (_e40.y * _e26.x)) / squared_width) / stretch;
-    float _e50 = share;
-    float sine = (_e50 * stretch) * metal::sqrt(squared_width);
+    metal::float3 _e19 = ltc_cosine_from_target(lobe, segment.p1 - segment.p0);
+    LtcKept _e21 = ltc_kept(segment, lobe, _e11 * stretch);
+    float nearness = (((_e19.x * _e11.y) - (_e19.y * _e11.x)) / squared_width) / stretch;
+    float sine = (_e21.share * stretch) * metal::sqrt(squared_width);
     float stretched = metal::sqrt(metal::dot(segment.normal, segment.normal) / squared_width) * lobe.determinant;
-    metal::float3 _e61 = q0;
-    metal::float3 _e62 = q1;
-    float _e63 = ltc_cosine_along(_e61, _e62, sine, nearness);
-    float integral = (stretched * _e63) / 6.2831855;
-    float _e67 = share;
-    return ((((_e67 > 0.0) & (squared_width > 0.0)) & (stretch > 0.0)) & (sine > 0.0)) ? integral : 0.0;
+    float _e44 = ltc_cosine_along(_e21.q0, _e21.q1, sine, nearness);
+    float integral = (stretched * _e44) * 0.15915494;
+    bool valid = ((segment.valid & lobe.valid) & (squared_width > 0.0)) & (stretch > 0.0);
+    return ((valid & (_e21.share > 0.0)) & (sine > 0.0)) ? integral : 0.0;
 }
 
 float ltc_line_unclamped(
