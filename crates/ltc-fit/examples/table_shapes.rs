@@ -167,14 +167,15 @@ fn draw(outcomes: &[Outcome], optima: [f64; 2]) -> String {
     let (x, y) = place((KILOBYTES[0] * KILOBYTES[1]).sqrt(), TV[0]);
     text((x, y + 42.0), "middle", "#333", "KiB of a half-float texture");
     text((MARGINS[0] + 8.0, MARGINS[2] + 14.0), "start", "#333", "mean total variation");
-    let right = WIDTH - MARGINS[1] - 4.0;
+    // On the left, where no table is near the lines.
+    let left = MARGINS[0] + 8.0;
     let mut leaders = Vec::new();
     for ((optimum, colour), words) in optima
         .into_iter()
         .zip(["#b33", "#36a"])
         .zip(["least of any single LTC, anisotropic draw", "least of any single LTC, isotropic draw"])
     {
-        text((right, place(1.0, optimum).1 + 16.0), "end", colour, words);
+        text((left, place(1.0, optimum).1 + 16.0), "start", colour, words);
     }
     for (outcome, (at, point)) in outcomes.iter().zip(label_places(outcomes)) {
         let colour = if outcome.isotropic { "#36a" } else { "#b33" };
