@@ -3,7 +3,6 @@
 use std::ops::ControlFlow;
 
 use ltc_render::{Backend, ErrorFigures, Image, RenderOptions, RenderTables, Renderer, Scene, ToneMap};
-use ltc_shade_gpu::{Gpu, GpuOptions};
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8, FlipPool, flip};
 
 use super::timer::{self, Task};
@@ -20,9 +19,6 @@ const SCENES: [(&str, &str); 5] = [
 
 /// The sampling of the reference takes so many samples at a time: one for each of its techniques.
 const TECHNIQUES: u32 = 3;
-
-/// The way of the graphics device.
-const ON_DEVICE: &str = "ltc_gpu";
 
 /// How long and how finely to measure.
 struct Effort {
@@ -83,15 +79,16 @@ pub fn times(tables: &RenderTables<'_>, plan: &Plan) -> Result<Vec<Record>, Stud
     for studio in studios(&renderers, &effort) {
         records.extend(studio?.times(&mut yardstick)?);
     }
-    let Some(step) = Interval::of(yardstick.times) else { return Ok(records) };
     // A step now and then is held up by other threads: the median of all is what frames are divided by.
-    for record in &mut records {
+    let step = Interval::of(yardstick.times);
+    let beside = |(record, on_processor): (Record, bool)| {
         // What a device of its own takes has nothing to do with the processor's clock.
-        if !record.id.ends_with(ON_DEVICE) || renderers.software {
-            record.relative = record.time.map(|time| time.over(step.median));
-        }
-    }
-    records.push(Record::new("yardstick/threads", "step").timed(step));
+        let step = step.filter(|_| on_processor);
+        let relative = record.time.zip(step).map(|(time, step)| time.over(step.median));
+        record.relative(relative)
+    };
+    let mut records: Vec<Record> = records.into_iter().map(beside).collect();
+    records.extend(step.map(|step| Record::new("yardstick/threads", "step").timed(step)));
     Ok(records)
 }
 
@@ -101,8 +98,6 @@ struct Renderers<'a> {
     reference: Renderer<'a>,
     /// Where there is a device.
     gpu: Option<Renderer<'a>>,
-    /// Whether that device is the processor.
-    software: bool,
 }
 
 impl<'a> Renderers<'a> {
@@ -111,7 +106,6 @@ impl<'a> Renderers<'a> {
             cpu: Renderer::new(tables, Backend::Cpu)?,
             reference: Renderer::new(tables, Backend::Reference)?,
             gpu: Renderer::new(tables, Backend::Gpu).ok(),
-            software: Gpu::new(GpuOptions::default()).is_ok_and(|gpu| gpu.info().software),
         })
     }
 }
@@ -155,11 +149,11 @@ impl<'a> Studio<'a> {
     }
 
     fn ways(&self) -> Vec<Way<'a>> {
-        let Renderers { cpu, reference, gpu, .. } = self.renderers;
+        let Renderers { cpu, reference, gpu } = self.renderers;
         let way =
             |name: &str, renderer, on_device| Way { name: name.to_owned(), renderer, samples: 1, on_device };
         let mut ways = vec![way("ltc_cpu", cpu, false)];
-        ways.extend(gpu.as_ref().map(|gpu| way(ON_DEVICE, gpu, true)));
+        ways.extend(gpu.as_ref().map(|gpu| way("ltc_gpu", gpu, true)));
         ways.extend(self.effort.curve.iter().filter(|n| 8 * **n <= self.truth()).map(|samples| Way {
             samples: *samples,
             ..way(&format!("sampling_{:04}", samples * TECHNIQUES), reference, false)
@@ -186,7 +180,8 @@ impl<'a> Studio<'a> {
         self.ways().into_iter().map(one).collect()
     }
 
-    fn times(&self, yardstick: &mut Yardstick) -> Result<Vec<Record>, StudyError> {
+    /// With each, whether it is as fast as the processor.
+    fn times(&self, yardstick: &mut Yardstick) -> Result<Vec<(Record, bool)>, StudyError> {
         let mut records = Vec::new();
         for way in self.ways() {
             let (mut times, mut spent) = (Vec::new(), 0.0);
@@ -207,7 +202,7 @@ impl<'a> Studio<'a> {
             })?;
             let id = self.id(&way);
             let time = Interval::of(times).ok_or_else(|| StudyError::Untimed(id.clone()))?;
-            records.push(Record::new(id, "frame").timed(time));
+            records.push((Record::new(id, "frame").timed(time), way.renderer.is_on_processor()));
         }
         Ok(records)
     }

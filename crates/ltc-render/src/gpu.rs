@@ -35,6 +35,10 @@ impl Device {
         Ok(Self { gpu, isotropic, anisotropic, shaders: Mutex::default() })
     }
 
+    pub fn is_software(&self) -> bool {
+        self.gpu.info().software
+    }
+
     fn shader(&self, textures: &[PrefilteredTexture], baked: bool) -> Result<Arc<Shader>, RenderError> {
         // What only textured lights or baked slices need is compiled for them alone.
         if !textures.is_empty() {

@@ -85,10 +85,9 @@ pub fn render(
 ) -> Result<Rendered, RenderError> {
     let start = Instant::now();
     // What is asked for is looked at before a device is opened for it.
-    options.check()?;
-    scene.world()?;
-    let rendered = Renderer::new(tables, backend)?.render(scene, options)?;
-    Ok(Rendered { seconds: start.elapsed().as_secs_f64(), ..rendered })
+    let side = options.check()?;
+    let world = scene.world()?;
+    Renderer::new(tables, backend)?.frames_of(&world, options, side, start, |_| ControlFlow::Break(()))
 }
 
 /// A back end that renders many scenes, or one scene many times: it keeps what they share, on the GPU the device with its
@@ -121,6 +120,14 @@ impl<'a> Renderer<'a> {
         })
     }
 
+    /// Whether the processor computes: always, but for a graphics device that is none of its own software.
+    pub fn is_on_processor(&self) -> bool {
+        #[cfg(feature = "gpu")]
+        return self.device.as_ref().is_none_or(crate::gpu::Device::is_software);
+        #[cfg(not(feature = "gpu"))]
+        true
+    }
+
     /// Renders a scene.
     ///
     /// # Errors
@@ -138,14 +145,25 @@ impl<'a> Renderer<'a> {
         &self,
         scene: &Scene,
         options: &RenderOptions<'_>,
+        each: impl FnMut(&Rendered) -> ControlFlow<()>,
+    ) -> Result<Rendered, RenderError> {
+        let start = Instant::now();
+        let side = options.check()?;
+        self.frames_of(&scene.world()?, options, side, start, each)
+    }
+
+    /// The first frame began at `start`.
+    fn frames_of(
+        &self,
+        world: &World,
+        options: &RenderOptions<'_>,
+        side: u32,
+        mut start: Instant,
         mut each: impl FnMut(&Rendered) -> ControlFlow<()>,
     ) -> Result<Rendered, RenderError> {
-        let mut start = Instant::now();
-        let side = options.check()?;
-        let world = scene.world()?;
-        let shader = self.shader(&world, options)?;
+        let shader = self.shader(world, options)?;
         loop {
-            let rendered = frame(&world, &*shader, options, side, start)?;
+            let rendered = frame(world, &*shader, options, side, start)?;
             if each(&rendered).is_break() {
                 return Ok(rendered);
             }

@@ -280,8 +280,6 @@ impl ShaderRequest {
     /// The modules to begin with.
     pub(crate) fn roots(&self) -> Vec<&'static str> {
         let mut roots = Vec::new();
-        let filtered_anisotropic =
-            if self.is_refined() { "fetch_refined_anisotropic" } else { "fetch_hardware_anisotropic" };
         let way = match (self.has(Feature::FunctionTables), self.has(Feature::HardwareFiltering)) {
             (true, _) => 2,
             (false, true) => 1,
@@ -294,7 +292,7 @@ impl ShaderRequest {
             ),
             (
                 Feature::Anisotropic,
-                ["fetch_exact_anisotropic", filtered_anisotropic, "fetch_function_anisotropic"],
+                ["fetch_exact_anisotropic", "fetch_filtered_anisotropic", "fetch_function_anisotropic"],
             ),
             (Feature::Baked, ["fetch_exact_baked", "fetch_hardware_baked", "fetch_function_baked"]),
         ] {
@@ -324,6 +322,7 @@ impl ShaderRequest {
             (Feature::TwoSided, "two_sided"),
             (Feature::RationalEdges, "rational_edges"),
             (Feature::LeanLights, "lean_lights"),
+            (Feature::Refined, "refined"),
         ]
         .into_iter()
         .filter_map(|(feature, symbol)| self.has(feature).then_some(symbol))

@@ -97,8 +97,6 @@ impl<'a> Forms<'a> {
             (Filtering::Buffer, Texels::F32, "buffer_f32", EXACT),
             (Filtering::Hardware, Texels::F16, "filtered_f16", ROUNDED),
             (Filtering::Hardware, Texels::F32, "filtered_f32", ROUNDED),
-            (Filtering::Refined, Texels::F16, "refined_f16", ROUNDED),
-            (Filtering::Refined, Texels::F32, "refined_f32", ROUNDED),
         ] {
             // A device that cannot filter 32 bits goes without that form.
             let Ok(gpu) = bench.gpu.with_tables(filtering, texels) else { continue };
@@ -188,12 +186,16 @@ impl<'a> Forms<'a> {
             };
             let (name, gpu, bound) = (way.name, &way.gpu, way.bound);
             let (two, four) = (Find::Isotropic(way.filtering), Find::Anisotropic(way.filtering));
-            // What is refined is the anisotropic table alone.
-            let refined = way.filtering == Filtering::Refined;
-            if !refined {
-                let (reads, name) = (on(Materials::Isotropic), format!("isotropic/{name}"));
-                self.lookup(&name, gpu, Stage::Compute, two, reads, Some(&isotropic), bound)?;
-            }
+            let reads = on(Materials::Isotropic);
+            self.lookup(
+                &format!("isotropic/{name}"),
+                gpu,
+                Stage::Compute,
+                two,
+                reads,
+                Some(&isotropic),
+                bound,
+            )?;
             let reads = on(Materials::Anisotropic);
             self.lookup(
                 &format!("anisotropic/{name}"),
@@ -204,9 +206,6 @@ impl<'a> Forms<'a> {
                 Some(&anisotropic),
                 bound,
             )?;
-            if refined {
-                continue;
-            }
             let slices = Tables { baked: Some(&way.baked), ..Tables::default() };
             let reads = Reads { tables: Some(slices), ..on(Materials::Blocks) };
             let (name_baked, find) = (format!("anisotropic_baked/{name}"), Find::Baked(way.filtering));
@@ -218,6 +217,18 @@ impl<'a> Forms<'a> {
             }
         }
         self.ways = ways;
+        for (texels, name) in [(Texels::F16, "refined_f16"), (Texels::F32, "refined_f32")] {
+            // A device that cannot filter 32 bits goes without that form.
+            let Ok(gpu) = self.bench.gpu.with_tables(Filtering::Refined, texels) else { continue };
+            let refined = TableTextures::upload(&gpu, full)?;
+            let reads = Reads {
+                tables: Some(Tables { anisotropic: Some(&refined), ..Tables::default() }),
+                materials: Some(Materials::Anisotropic),
+                ..Reads::default()
+            };
+            let (name, find) = (format!("anisotropic/{name}"), Find::Anisotropic(Filtering::Refined));
+            self.lookup(&name, &gpu, Stage::Compute, find, reads, Some(&anisotropic), ROUNDED)?;
+        }
         let drop_in = self.published.drop_in.clone();
         let uniform = self.published.anisotropic.clone();
         let gpu = self.bench.gpu;

@@ -1,5 +1,5 @@
 // The anisotropic table interpolated by hand, in full f32: on every device. No bindings: the texture is a parameter.
-// Needs: table, anisotropic.
+// Needs: anisotropic, fetch_exact_entry.
 
 fn ltc_fetch_anisotropic(
     texture: texture_3d<f32>,
@@ -38,14 +38,9 @@ fn ltc_fetch_nearest_anisotropic(
     place: LtcAnisotropicPlace,
 ) -> LtcTexels {
     let phis = u32(axes.phi.last) + 1u;
-    let group = vec3u(0u, 0u, phis * (u32(axes.theta.last) + 1u));
     let slice = ltc_nearest_node(place.phi) + phis * ltc_nearest_node(place.theta);
     let at = vec3u(ltc_nearest_node(place.lambda), ltc_nearest_node(place.alpha), slice);
-    return LtcTexels(
-        textureLoad(texture, at, 0),
-        textureLoad(texture, at + group, 0),
-        textureLoad(texture, at + 2u * group, 0),
-    );
+    return ltc_fetch_entry(texture, at, phis * (u32(axes.theta.last) + 1u));
 }
 
 // The table's answer for the unit vector `wo`, in the shading frame.

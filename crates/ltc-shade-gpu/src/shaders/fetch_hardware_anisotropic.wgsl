@@ -1,5 +1,5 @@
 // The anisotropic table interpolated by the texture unit, which rounds weights to about 8 bits: 6 fetches. No bindings:
-// the texture is a parameter. Needs: table, anisotropic.
+// the texture is a parameter. Needs: anisotropic, fetch_hardware_groups.
 
 fn ltc_fetch_theta(
     texture: texture_3d<f32>,
@@ -8,17 +8,11 @@ fn ltc_fetch_theta(
     place: LtcAnisotropicPlace,
     theta: f32,
 ) -> LtcTexels {
-    let size = vec3f(textureDimensions(texture));
     let phis = axes.phi.last + 1.0;
     let thetas = axes.theta.last + 1.0;
-    let at = vec3f(ltc_texel(place.lambda), ltc_texel(place.alpha), ltc_texel(place.phi) + phis * theta) / size;
     // phi stays within the nodes of its theta: the filter never reaches into the next one.
-    let group = vec3f(0.0, 0.0, phis * thetas / size.z);
-    return LtcTexels(
-        textureSampleLevel(texture, filtering, at, 0.0),
-        textureSampleLevel(texture, filtering, at + group, 0.0),
-        textureSampleLevel(texture, filtering, at + 2.0 * group, 0.0),
-    );
+    let at = vec3f(ltc_texel(place.lambda), ltc_texel(place.alpha), ltc_texel(place.phi) + phis * theta);
+    return ltc_fetch_groups(texture, filtering, at, phis * thetas);
 }
 
 fn ltc_fetch_anisotropic(
