@@ -12,7 +12,7 @@ fn ltc_fetch_theta(
     let thetas = axes.theta.last + 1.0;
     // phi stays within the nodes of its theta: the filter never reaches into the next one.
     let at = vec3f(ltc_texel(place.lambda), ltc_texel(place.alpha), ltc_texel(place.phi) + phis * theta);
-    return ltc_fetch_groups(texture, filtering, at, phis * thetas);
+    return ltc_fetch_groups(texture, filtering, vec3f(textureDimensions(texture)), at, phis * thetas);
 }
 
 fn ltc_fetch_anisotropic(

@@ -1,8 +1,13 @@
 // One fetch by the texture unit for each group of channels of a 3D texture. No bindings: the texture is a parameter. Needs: table.
 
-// `at` in texels; groups are `group` texels apart along z.
-fn ltc_fetch_groups(texture: texture_3d<f32>, filtering: sampler, at: vec3f, group: f32) -> LtcTexels {
-    let size = vec3f(textureDimensions(texture));
+// `at` in texels, of which the texture has `size`; groups are `group` texels apart along z.
+fn ltc_fetch_groups(
+    texture: texture_3d<f32>,
+    filtering: sampler,
+    size: vec3f,
+    at: vec3f,
+    group: f32,
+) -> LtcTexels {
     let place = at / size;
     let further = vec3f(0.0, 0.0, group / size.z);
     return LtcTexels(

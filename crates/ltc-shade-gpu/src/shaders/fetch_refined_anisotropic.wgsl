@@ -31,8 +31,9 @@ fn ltc_lookup_anisotropic(
     alpha_y: f32,
 ) -> LtcLookup {
     let place = ltc_anisotropic_place(axes, wo, alpha_x, alpha_y);
-    let refined = ltc_refined_place(f32(textureDimensions(texture).z), axes, place);
-    var texels = ltc_fetch_groups(texture, filtering, refined.at, refined.group);
+    let size = vec3f(textureDimensions(texture));
+    let refined = ltc_refined_place(size.z, axes, place);
+    var texels = ltc_fetch_groups(texture, filtering, size, refined.at, refined.group);
     if !ltc_regular(texels) {
         texels = ltc_with_matrix(texels, ltc_fetch_entry(texture, vec3u(refined.at), u32(refined.group)));
     }
