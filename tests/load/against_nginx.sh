@@ -4,6 +4,7 @@
 # wrk takes more processor time for an answer than either server does. With one thread of it on two processors, the servers have time to
 # spare, and what is measured is mostly wrk; with THREADS=2 processors are scarce, and the cheaper server wins.
 set -euo pipefail
+source "$(dirname "$0")/serving.sh"
 server=$(realpath "$1")
 table=${2:-ggx-isotropic}
 seconds=${SECONDS_EACH:-4}
@@ -12,10 +13,8 @@ folder=$(mktemp -d)
 trap 'kill "${pids[@]}" 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$folder"' EXIT
 pids=()
 
-LTC_LISTEN=127.0.0.1:0 LTC_DATA=$folder/data LTC_LOG=warn "$server" >"$folder/url" &
-pids+=($!)
-until [ -s "$folder/url" ]; do sleep 0.1; done
-url=$(cat "$folder/url")
+serve "$server" "$folder" LTC_LOG=warn
+pids+=("$pid")
 digest=$(curl -fsS "$url/v1/tables/$table" | python3 -c 'import json, sys; print(json.load(sys.stdin)["digest"])')
 ours=$url/v1/tables/$table/versions/$digest/data
 

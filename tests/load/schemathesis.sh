@@ -2,15 +2,13 @@
 # schemathesis over the service's own description, with a real token and real names and digests: no 5xx, nothing undocumented.
 # Usage: tests/load/schemathesis.sh SERVER [EXAMPLES]   (SCHEMATHESIS=/path/to/schemathesis)
 set -euo pipefail
+source "$(dirname "$0")/serving.sh"
 server=$(realpath "$1")
 examples=${2:-50}
 folder=$(mktemp -d)
-trap 'kill "$pid" 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$folder"' EXIT
-LTC_LISTEN=127.0.0.1:0 LTC_DATA=$folder/data LTC_LOG=error LTC_LIMITS_WRITES_PER_SECOND=0 LTC_REFITS_WORKERS=0 LTC_REFITS_QUEUE=100000 \
-    TOKEN_FILE=$folder/token "$server" >"$folder/url" &
-pid=$!
-until [ -s "$folder/url" ]; do sleep 0.1; done
-url=$(cat "$folder/url")
+pid=
+trap 'kill $pid 2>/dev/null || true; wait 2>/dev/null || true; rm -rf "$folder"' EXIT
+serve "$server" "$folder" LTC_LOG=error LTC_LIMITS_WRITES_PER_SECOND=0 LTC_REFITS_WORKERS=0 LTC_REFITS_QUEUE=100000
 digest=$(curl -fsS "$url/v1/tables/ggx-isotropic" | python3 -c 'import json, sys; print(json.load(sys.stdin)["digest"])')
 refit=$(curl -fsS "$url/v1/refits" -H "Authorization: Bearer $(cat "$folder/token")" -H 'Content-Type: application/json' \
     -d '{"preset": "disney-diffuse"}' | python3 -c 'import json, sys; print(json.load(sys.stdin)["id"])')
@@ -30,12 +28,14 @@ REAL = {
     "alias": ["stable", "studio"],
     "id": ["$refit"],
     "slug": ["malformed", "internal"],
+    "lang": ["wgsl", "glsl", "glsl-es", "hlsl", "msl", "spirv"],
 }
 # Numbers as parameters of a query: without them no lookup would come to an answer.
 QUERY = {
     "theta": {"lookup": ["0.5", "0"], "data": ["0..0.5"]},
     "alpha_x": {"lookup": ["0.3"]}, "alpha_y": {"lookup": ["0.3"]},
     "alpha": {"data": ["0.1..0.5"]}, "phi": {"lookup": ["1"]}, "lambda": {}, "channels": {"data": ["m", "m,magnitude,fresnel"]},
+    "lights": {"shader": ["quad", "quad,line", "sphere"]}, "features": {"shader": ["isotropic", "anisotropic,fresnel"]},
 }
 
 
@@ -43,7 +43,7 @@ QUERY = {
 def map_query(context, query):
     if not query or CHANCE.random() < 0.5:
         return query
-    kind = "lookup" if "alpha_x" in query else "data"
+    kind = "lookup" if "alpha_x" in query else "shader" if "lights" in query else "data"
     for name in list(query):
         if name in QUERY:
             values = QUERY[name].get(kind)
