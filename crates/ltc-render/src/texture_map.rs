@@ -51,6 +51,7 @@ impl TextureMap {
     }
 
     /// Whether the light is the whole picture.
+    #[cfg(feature = "gpu")]
     pub fn fills(&self) -> bool {
         self.coverage.is_none()
     }
