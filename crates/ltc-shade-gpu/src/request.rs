@@ -261,6 +261,7 @@ impl ShaderRequest {
     }
 
     /// Whether it looks into a table of finer λ.
+    #[cfg(feature = "export")]
     pub(crate) fn is_refined(&self) -> bool {
         self.has(Feature::Refined)
             && self.has(Feature::HardwareFiltering)
@@ -268,6 +269,7 @@ impl ShaderRequest {
     }
 
     /// Whether it looks into a table.
+    #[cfg(feature = "export")]
     pub(crate) fn looks_up(&self) -> bool {
         Feature::LOOKUPS.into_iter().any(|feature| self.has(feature))
     }
