@@ -64,10 +64,14 @@ impl Scale {
         self.from + part.clamp(0.0, 1.0) * (self.to - self.from)
     }
 
-    /// Powers of ten, with 2 and 5 between them where the axis is short.
+    /// Powers of ten, with 2 and 5 between them where the axis is short, and more where it is very short.
     fn ticks(&self) -> Vec<f64> {
         let decades = (self.high - self.low) / std::f64::consts::LN_10;
-        let steps: &[f64] = if decades < 3.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let steps: &[f64] = match decades {
+            ..1.0 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0],
+            ..3.5 => &[1.0, 2.0, 5.0],
+            _ => &[1.0],
+        };
         let first = (self.low / std::f64::consts::LN_10).floor() as i32;
         let last = (self.high / std::f64::consts::LN_10).ceil() as i32;
         (first..=last)
@@ -83,11 +87,7 @@ impl Plot {
         let marks = || self.series.iter().flat_map(|s| &s.marks);
         let x = Scale::of(marks().map(|m| m.x), LEFT, WIDTH - RIGHT);
         let y = Scale::of(marks().map(|m| m.y), HEIGHT - BOTTOM, TOP);
-        let mut svg = format!(
-            "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{} over {}\">\n",
-            escape(&self.y),
-            escape(&self.x)
-        );
+        let mut svg = String::new();
         self.axes(&mut svg, x, y);
         // Labels keep off points, too.
         let mut taken: Vec<[f64; 4]> = marks()
@@ -97,9 +97,12 @@ impl Plot {
         for (i, series) in self.series.iter().enumerate() {
             series.draw(&mut svg, COLOURS[i % COLOURS.len()], x, y, &mut taken);
         }
-        self.legend(&mut svg);
-        svg.push_str("</svg>\n");
-        svg
+        let height = self.legend(&mut svg);
+        format!(
+            "<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-label=\"{} over {}\">\n{svg}</svg>\n",
+            escape(&self.y),
+            escape(&self.x)
+        )
     }
 
     fn axes(&self, svg: &mut String, x: Scale, y: Scale) {
@@ -139,24 +142,34 @@ impl Plot {
         );
     }
 
-    fn legend(&self, svg: &mut String) {
-        let named: Vec<(usize, &Series)> = self.series.iter().enumerate().collect();
-        if named.len() < 2 {
-            return;
+    /// What the colours mean, in lines below the plot, where nothing else is; gives the height of all.
+    fn legend(&self, svg: &mut String) -> f64 {
+        if self.series.len() < 2 {
+            return HEIGHT;
         }
-        for (row, (i, series)) in named.into_iter().enumerate() {
-            let y = TOP + 14.0 + 18.0 * row as f64;
-            let x = WIDTH - RIGHT - 12.0;
+        let (mut x, mut y) = (LEFT, HEIGHT + 14.0);
+        for (series, colour) in self.series.iter().zip(COLOURS.iter().cycle()) {
+            let width = 34.0 + text_width(&series.name);
+            if x + width > WIDTH && x > LEFT {
+                (x, y) = (LEFT, y + 18.0);
+            }
             let _ = writeln!(
                 svg,
-                "<circle cx=\"{x:.1}\" cy=\"{:.1}\" r=\"5\" fill=\"{}\"/><text x=\"{:.1}\" y=\"{y:.1}\" text-anchor=\"end\">{}</text>",
+                "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"5\" fill=\"{colour}\"/><text x=\"{:.1}\" y=\"{y:.1}\">{}</text>",
+                x + 5.0,
                 y - 4.0,
-                COLOURS[i % COLOURS.len()],
-                x - 10.0,
+                x + 15.0,
                 escape(&series.name)
             );
+            x += width;
         }
+        y + 10.0
     }
+}
+
+/// About as wide as a text is.
+fn text_width(text: &str) -> f64 {
+    6.6 * text.chars().count() as f64
 }
 
 impl Series {
@@ -194,7 +207,7 @@ impl Series {
 
 /// Where a label has room beside its point: right or left of it, level or a line above or below.
 fn room(taken: &mut Vec<[f64; 4]>, (cx, cy): (f64, f64), label: &str) -> Option<(f64, f64)> {
-    let width = 6.6 * label.chars().count() as f64;
+    let width = text_width(label);
     for line in [0.0, -15.0, 15.0, -30.0, 30.0] {
         for left in [cx + 8.0, cx - 8.0 - width] {
             let area = [left, cy + line - 7.0, left + width, cy + line + 7.0];
@@ -231,6 +244,11 @@ mod tests {
         let svg = Plot { x: "x".into(), y: "y & z".into(), series: vec![series] }.svg();
         assert_eq!(svg.matches("<circle").count(), 3);
         assert!(svg.contains("a &lt;b&gt;") && svg.contains("y &amp; z") && !svg.contains("NaN"));
+        // A short axis has several ticks, too.
+        for high in [1.01, 3.9, 9.0, 1e3, 1e9] {
+            let ticks = Scale::of([1.0, high].into_iter(), 0.0, 1.0).ticks().len();
+            assert!((2..15).contains(&ticks), "{ticks} ticks from 1 to {high}");
+        }
         let empty = Plot { x: "x".into(), y: "y".into(), series: Vec::new() }.svg();
         assert!(!empty.contains("NaN") && !empty.contains("inf"));
     }
