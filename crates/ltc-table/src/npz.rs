@@ -107,7 +107,12 @@ fn read_array(
     let mut bytes = Vec::new();
     entry.take(MAX_ARRAY_BYTES).read_to_end(&mut bytes).map_err(npz_error)?;
     let array = npyz::NpyFile::new(&bytes[..]).map_err(|e| npz_error(format!("array {name}: {e}")))?;
-    if array.shape() != shape || array.order() != npyz::Order::C {
+    if array.order() != npyz::Order::C {
+        return Err(npz_error(format!(
+            "array {name} is in Fortran order; numpy.ascontiguousarray gives the order that is read"
+        )));
+    }
+    if array.shape() != shape {
         let what = format!("the shape of {name}: {:?} in the archive, {shape:?} by the axes", array.shape());
         return Err(TableError::Disagreement { what });
     }

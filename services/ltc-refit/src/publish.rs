@@ -16,6 +16,9 @@ impl Shared {
         let manifest = fitted.manifest();
         let json = serde_json::to_value(manifest).map_err(|e| StoreError::Backend(e.to_string()))?;
         self.blobs.put(BlobKind::Payload, &manifest.digest, fitted.payload()).await?;
+        if let Some(reason) = self.hold_latest(claim, &manifest.name, &json).await? {
+            tracing::info!(table = manifest.name, reason, "latest stays");
+        }
         let new = NewVersion {
             table: manifest.name.clone(),
             digest: manifest.digest.clone(),
@@ -25,6 +28,34 @@ impl Shared {
             reason: None,
         };
         Ok(self.metadata.add_version(new, None).await?.0)
+    }
+
+    /// Where nobody has set `latest` it is the newest version: a worse one would take it by being there. It is then set to the version
+    /// that it is, before the new one is kept; says why.
+    async fn hold_latest(
+        &self,
+        claim: &Claim,
+        table: &str,
+        manifest: &Value,
+    ) -> Result<Option<String>, StoreError> {
+        if matches!(&claim.job.request.alias, Some((name, true)) if name == LATEST) {
+            return Ok(None);
+        }
+        let aliases = self.metadata.aliases().await?;
+        if aliases.iter().any(|alias| alias.table == table && alias.name == LATEST) {
+            return Ok(None);
+        }
+        let versions = self.metadata.versions().await?;
+        let newest = versions.into_iter().filter(|v| v.table == table && v.state == VersionState::Published);
+        let Some(newest) = newest.max_by_key(|v| v.number) else { return Ok(None) };
+        let Some(why) = worse(&newest.manifest, manifest) else { return Ok(None) };
+        match self.metadata.move_alias(table, LATEST, newest.number, Some(0)).await {
+            // Somebody has set it meanwhile.
+            Ok(_) | Err(StoreError::Conflict { .. }) => {
+                Ok(Some(format!("at version {}: {why}", newest.number)))
+            }
+            Err(error) => Err(error),
+        }
     }
 
     /// Moves the alias that the job is to move, where the version deserves it.
@@ -61,15 +92,18 @@ impl Shared {
     /// Why an alias is not moved, where it should not be.
     async fn why_it_stays(&self, there: &Alias, new: &StoredVersion) -> Result<Option<String>, StoreError> {
         let old = self.metadata.version(&there.table, there.number).await?;
-        let (old, new) = (tv_mean(&old.manifest), tv_mean(&new.manifest));
-        Ok(match (old, new) {
-            (Some(old), Some(new)) if new > old => Some(format!(
-                "stays at version {}: the mean TV of its standard draw is {old:.6}, that of this one {new:.6}",
-                there.number
-            )),
-            _ => None,
-        })
+        let why = worse(&old.manifest, &new.manifest);
+        Ok(why.map(|why| format!("stays at version {}: {why}", there.number)))
     }
+}
+
+/// The alias that every table has: its newest version, unless it was set.
+const LATEST: &str = "latest";
+
+/// Why a version is worse than another one, if it is.
+fn worse(old: &Value, new: &Value) -> Option<String> {
+    let (old, new) = (tv_mean(old)?, tv_mean(new)?);
+    (new > old).then(|| format!("the mean TV of its standard draw is {old:.6}, that of this one {new:.6}"))
 }
 
 /// The mean total variation over the standard draw that a manifest states.

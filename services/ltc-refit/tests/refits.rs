@@ -171,6 +171,31 @@ async fn a_worse_table_is_kept_but_does_not_take_the_alias() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn a_worse_table_does_not_become_latest_where_nobody_has_set_it() {
+    for alias in [None, Some("latest"), Some("mine")] {
+        let store = MemoryStore::default();
+        let refits = refits(&store);
+        let workers = refits.start();
+        let good = ask(&refits, Ask::new(spec(100))).await;
+        assert_eq!(ended(&store, &good.id).await.version, Some(1));
+        assert_eq!(store.aliases().await.unwrap(), [], "latest is the newest");
+        let better = ask(&refits, Ask::new(spec(101))).await;
+        let better = ended(&store, &better.id).await.version;
+        let set = store.aliases().await.unwrap();
+        let worse = ask(&refits, Ask { alias: alias.map(str::to_owned), ..Ask::new(spec(0)) }).await;
+        let worse = ended(&store, &worse.id).await.version.unwrap();
+        let aliases = store.aliases().await.unwrap();
+        let latest = aliases.iter().find(|a| a.name == "latest").map(|a| a.number);
+        assert!(latest.is_some_and(|number| number < worse), "{alias:?}: {aliases:?}, {better:?}, {set:?}");
+        let forced = Ask { alias: Some("latest".to_owned()), force: true, ..Ask::new(spec(0)) };
+        assert_eq!(ended(&store, &ask(&refits, forced).await.id).await.version, Some(worse));
+        let aliases = store.aliases().await.unwrap();
+        assert_eq!(aliases.iter().find(|a| a.name == "latest").map(|a| a.number), Some(worse));
+        workers.stop().await;
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn a_stopped_refit_goes_on_to_the_same_digest() {
     let store = MemoryStore::default();
     let refits = refits(&store);

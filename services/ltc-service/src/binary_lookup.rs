@@ -97,6 +97,9 @@ pub(crate) fn answer_all(
     for (index, [theta, phi, alpha_x, alpha_y]) in numbers.as_chunks().0.iter().copied().enumerate() {
         let refused =
             |reason: String| ApiError::invalid(format!("query {index}"), format!("is refused: {reason}"));
+        // The f32 nearest to the horizon lies behind it.
+        let horizon = core::f64::consts::FRAC_PI_2;
+        let theta = if form == Form::F32 && theta == f64::from(horizon as f32) { horizon } else { theta };
         let query = Query { theta, phi, alpha_x, alpha_y };
         let Lookup { lobes, magnitude, fresnel } =
             version.table().lookup(&query).map_err(|e| refused(e.to_string()))?;

@@ -130,9 +130,22 @@ impl Entry {
         self.aliased(LATEST)
     }
 
-    /// Aliases that were set.
-    pub(crate) fn aliases(&self) -> &BTreeMap<String, Alias> {
-        &self.aliases
+    /// All aliases in alphabetical order, `latest` among them, whether or not somebody has set it.
+    pub(crate) fn aliases(&self, table: &str) -> Vec<Alias> {
+        let mut names: Vec<&str> = self.aliases.keys().map(String::as_str).collect();
+        if let Err(place) = names.binary_search(&LATEST) {
+            names.insert(place, LATEST);
+        }
+        names.into_iter().filter_map(|name| self.alias(table, name)).collect()
+    }
+
+    /// An alias; `latest` that nobody has set has the revision 0.
+    pub(crate) fn alias(&self, table: &str, name: &str) -> Option<Alias> {
+        if let Some(alias) = self.aliases.get(name) {
+            return Some(alias.clone());
+        }
+        let number = *self.versions.keys().next_back().filter(|_| name == LATEST)?;
+        Some(Alias { table: table.to_owned(), name: name.to_owned(), number, revision: 0 })
     }
 
     fn aliased(&self, alias: &str) -> Option<&Arc<Manifest>> {

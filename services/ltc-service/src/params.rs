@@ -2,30 +2,40 @@
 
 use crate::ApiError;
 
-/// Decoded parameters that have not been asked for yet.
+/// Parameters that have not been asked for yet: decoded names, and values as they came.
 pub(crate) struct Params(Vec<(String, String)>);
 
 impl Params {
-    /// Splits and decodes a query. `+` is a plus, not a space: numbers have one, names do not have the other.
+    /// Splits a query, and refuses what cannot be decoded.
     pub(crate) fn parse(query: Option<&str>) -> Result<Self, ApiError> {
         let mut params: Vec<(String, String)> = Vec::new();
         for pair in query.unwrap_or_default().split('&').filter(|pair| !pair.is_empty()) {
             let (name, value) = pair.split_once('=').unwrap_or((pair, ""));
             let name = decode(name)
                 .ok_or_else(|| ApiError::malformed(None, "the query has a name that cannot be decoded"))?;
-            let value = decode(value).ok_or_else(|| {
-                ApiError::malformed(Some(&name), format!("{name} has a value that cannot be decoded"))
-            })?;
+            if decode(value).is_none() {
+                let reason = format!("{name} has a value that cannot be decoded");
+                return Err(ApiError::malformed(Some(&name), reason));
+            }
             if params.iter().any(|(known, _)| *known == name) {
                 return Err(ApiError::invalid(name, "is given more than once"));
             }
-            params.push((name, value));
+            params.push((name, value.to_owned()));
         }
         Ok(Self(params))
     }
 
-    /// The value of a parameter, if there is one.
+    /// The value of a parameter, if there is one. `+` is a plus: numbers and times have one, and no spaces.
     pub(crate) fn take(&mut self, name: &str) -> Option<String> {
+        decode(&self.raw(name)?)
+    }
+
+    /// The value of a parameter that is words: `+` is a space, as forms and most clients send it.
+    pub(crate) fn words(&mut self, name: &str) -> Option<String> {
+        decode(&self.raw(name)?.replace('+', "%20"))
+    }
+
+    fn raw(&mut self, name: &str) -> Option<String> {
         let index = self.0.iter().position(|(known, _)| known == name)?;
         Some(self.0.swap_remove(index).1)
     }
@@ -98,6 +108,9 @@ mod tests {
         assert_eq!(params.number("theta").unwrap(), Some(1.0));
         assert_eq!(params.take("c").unwrap(), "m");
         assert_eq!(params.take("c"), None);
+        let mut words = self::params("name=ltc+b%2Bc%20d&since=2026-11-23T10:00:00+01:00").unwrap();
+        assert_eq!(words.words("name").unwrap(), "ltc b+c d");
+        assert_eq!(words.take("since").unwrap(), "2026-11-23T10:00:00+01:00");
         assert!(params.finish(&[]).is_ok());
         assert!(Params::parse(None).unwrap().finish(&[]).is_ok());
     }

@@ -12,8 +12,8 @@ use ltc_fit::measure::{self, MeasureSettings};
 use ltc_fit::{Brdf, Cost, FitSpec, Layout, brdf};
 use ltc_table::digest::digest;
 use ltc_table::{
-    Axis, BrdfInfo, CellStats, ChannelInfo, ClosedForm, Floors, Manifest, Quantity, Table, TableError,
-    TableVersion, npz,
+    Axis, BrdfInfo, CellStats, ChannelInfo, ClosedForm, Errors, Floors, Manifest, Quantity, Table,
+    TableError, TableVersion, npz,
 };
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -36,6 +36,10 @@ pub(crate) struct Checked {
 
 /// Total variation from which a table is not one of its BRDF: lobes that have nothing to do with each other differ by so much.
 const NOT_THAT_BRDF: f64 = 0.3;
+/// Mean error of magnitude or Fresnel term from which they are not those of the BRDF: both are shares of light, about 0 to 1.
+const NOT_THOSE_CHANNELS: f64 = 0.1;
+/// What magnitude and Fresnel term of an entry may be at most. Not every BRDF keeps energy: Charlie's sheen reaches 2.9.
+const MOST: f64 = 10.0;
 /// What share of the measured error a table may leave out of what it says: draws differ.
 const BETTER: f64 = 0.2;
 
@@ -73,7 +77,25 @@ fn faults_of_ours(uploaded: &Uploaded) -> Result<Vec<String>, String> {
     // Measuring is a part of fitting: what is too large to be fitted is too large to be measured.
     Cost::of(&spec).check(&ltc_fit::Limits::default()).map_err(|e| e.to_string())?;
     let version = TableVersion::new(manifest, uploaded.payload.to_vec()).map_err(|e| e.to_string())?;
-    ltc_fit::verify(&version).map(|found| found.faults).map_err(|e| e.to_string())
+    let mut faults = ltc_fit::verify(&version).map(|found| found.faults).map_err(|e| e.to_string())?;
+    faults.extend(implausible(version.table(), &version.manifest().errors).err());
+    Ok(faults)
+}
+
+/// Refuses channels that are not those of the BRDF, whatever a manifest says of them.
+fn implausible(table: &Table, errors: &Errors) -> Result<(), String> {
+    for (name, entries, mean) in [
+        ("magnitude", table.magnitude(), errors.magnitude_mean),
+        ("fresnel", table.fresnel(), errors.fresnel_mean),
+    ] {
+        if let Some(entry) = entries.iter().find(|entry| **entry > MOST) {
+            return Err(format!("{name}: an entry is {entry:e}, and it is about a share of light"));
+        }
+        if !(0.0..NOT_THOSE_CHANNELS).contains(&mean) {
+            return Err(format!("{name}: its mean error is {mean:.3}: it is not that of the BRDF"));
+        }
+    }
+    Ok(())
 }
 
 /// What a manifest from elsewhere must or may have. The rest of it is kept under `fit.stated`.
@@ -122,6 +144,7 @@ fn measured(name: &str, uploaded: &Uploaded) -> Result<(Value, Vec<u8>), String>
             brdf.name()
         ));
     }
+    implausible(&table, &errors)?;
     if let Some(claimed) = stated.errors.pointer("/standard_draw/tv_mean").and_then(Value::as_f64)
         && claimed < (1.0 - BETTER) * tv
     {
@@ -270,6 +293,33 @@ mod tests {
         assert!((found - expected).abs() < 1e-3, "{found} {expected}");
         assert_eq!(manifest.fit["stated"]["program"], "another");
         TableVersion::new(manifest, checked.payload.to_vec()).unwrap();
+    }
+
+    /// The table with one channel changed.
+    fn with_channels(change: impl Fn(&mut [f64], &mut [f64])) -> Uploaded {
+        let uploaded = elsewhere(NAME);
+        let axes: Vec<Axis> = serde_json::from_value(uploaded.manifest["axes"].clone()).unwrap();
+        let table = npz::read(&uploaded.payload, &axes).unwrap();
+        let (mut magnitude, mut fresnel) = (table.magnitude().to_vec(), table.fresnel().to_vec());
+        change(&mut magnitude, &mut fresnel);
+        let changed =
+            Table::new(axes, table.m().to_vec(), magnitude, fresnel, table.cells().clone()).unwrap();
+        Uploaded { payload: TableVersion::payload_of(&changed).unwrap().into(), ..uploaded }
+    }
+
+    #[test]
+    fn channels_of_something_else_are_a_fault() {
+        let same = with_channels(|_, _| ());
+        assert_eq!(check(NAME, &same).faults, [""; 0]);
+        for (changed, said) in [
+            (with_channels(|n, _| n.iter_mut().for_each(|n| *n *= 0.3)), "magnitude: its mean error"),
+            (with_channels(|_, f| f.iter_mut().for_each(|f| *f += 0.2)), "fresnel: its mean error"),
+            (with_channels(|n, _| n[3] = 1e300), "magnitude: an entry is 1e300"),
+            (with_channels(|_, f| f[0] = 15.0), "fresnel: an entry is 1.5e1"),
+        ] {
+            let found = fault(&changed);
+            assert!(found.contains(said), "{said}: {found}");
+        }
     }
 
     #[test]

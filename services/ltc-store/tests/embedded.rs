@@ -197,3 +197,22 @@ async fn the_first_start_is_completed_and_repeated_starts_change_nothing() {
     assert_eq!(seed(&store, &store, &shipped, &|_| None).await.unwrap(), 0);
     assert_eq!(store.aliases().await.unwrap(), aliases);
 }
+
+#[cfg(unix)]
+#[tokio::test]
+async fn a_database_that_is_gone_is_missed() {
+    let folder = tempdir().unwrap();
+    let data = folder.path().join("data");
+    let store = EmbeddedStore::open(&data).unwrap();
+    store.ping().await.unwrap();
+    let elsewhere = folder.path().join("elsewhere");
+    fs::rename(&data, &elsewhere).unwrap();
+    assert!(store.ping().await.is_err(), "SQLite itself would go on");
+    // Another one in its place is not the one that is written to.
+    fs::create_dir(&data).unwrap();
+    fs::copy(elsewhere.join("ltc.sqlite"), data.join("ltc.sqlite")).unwrap();
+    assert!(store.ping().await.is_err());
+    fs::remove_dir_all(&data).unwrap();
+    fs::rename(&elsewhere, &data).unwrap();
+    store.ping().await.unwrap();
+}

@@ -146,14 +146,14 @@ fn number() -> Value {
 
 fn crops(operation: Operation) -> Operation {
     [
-        ("theta", "polar angle of the view"),
-        ("phi", "its azimuth"),
+        ("theta", "the view's polar angle"),
+        ("phi", "the view's azimuth"),
         ("alpha", "the larger width"),
         ("lambda", "the smaller over it"),
     ]
     .into_iter()
     .fold(operation, |operation, (name, what)| {
-        operation.query(name, range(), &format!("LOW..HIGH: only the nodes around this range of the {what}."))
+        operation.query(name, range(), &format!("LOW..HIGH: only the nodes around this range of {what}."))
     })
 }
 

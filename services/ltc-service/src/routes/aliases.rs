@@ -58,9 +58,10 @@ impl Named {
     /// The alias as it is now and its JSON, if there is one.
     fn current(&self, index: &Index) -> Result<Option<(Alias, Tagged)>, ApiError> {
         let entry = index.table(&self.table)?;
-        let Some(alias) = entry.aliases().get(&self.alias) else { return Ok(None) };
+        let Some(alias) = entry.alias(&self.table, &self.alias) else { return Ok(None) };
         let manifest = index.version(&self.table, &alias.number.to_string())?.manifest;
-        Ok(Some((alias.clone(), shown(alias, &manifest)?)))
+        let content = shown(&alias, &manifest)?;
+        Ok(Some((alias, content)))
     }
 }
 
@@ -90,7 +91,7 @@ pub(crate) async fn list(
     let index = state.index();
     let entry = index.table(&name)?;
     let mut aliases = Vec::new();
-    for alias in entry.aliases().values() {
+    for alias in entry.aliases(&name) {
         let manifest = index.version(&name, &alias.number.to_string())?.manifest;
         aliases.push((alias, manifest));
     }
@@ -179,12 +180,15 @@ fn expected_revision(headers: &HeaderMap, current: Option<&(Alias, Tagged)>) -> 
         }
         return Ok(alias.revision);
     }
-    let Some(tags) = TagList::of(headers, &header::IF_NONE_MATCH) else {
+    // With any other value than * it would say nothing of what the client has seen.
+    if !TagList::of(headers, &header::IF_NONE_MATCH).is_some_and(|tags| tags.is_any()) {
         return Err(ApiError::PreconditionRequired);
-    };
+    }
     match current {
-        None => Ok(0),
-        Some((alias, content)) if !tags.is_any() && !tags.matches_weakly(&content.etag) => Ok(alias.revision),
-        Some(_) => Err(failed("there is such an alias already, as If-None-Match says there must not")),
+        // Nobody has set it: `latest`, which every table has, is not in the way.
+        Some((alias, _)) if alias.revision > 0 => {
+            Err(failed("there is such an alias already, as If-None-Match says there must not"))
+        }
+        _ => Ok(0),
     }
 }

@@ -93,7 +93,7 @@ pub(crate) async fn list(
     request: Preconditions,
 ) -> Result<Response, ApiError> {
     let mut params = Params::parse(query.as_deref())?;
-    let (name, since) = (params.take("name"), params.take("since"));
+    let (name, since) = (params.words("name"), params.take("since"));
     let limit = params.count("limit", LISTED, MOST_LISTED)?;
     params.finish(&["name", "since", "limit"])?;
     if let Some(since) = &since {

@@ -5,6 +5,7 @@ use std::time::Duration;
 use axum::Json;
 use axum::extract::State;
 use axum::http::{HeaderName, header};
+use ltc_store::BlobKind;
 use serde::Serialize;
 
 use crate::{ApiError, AppState};
@@ -48,8 +49,18 @@ pub(crate) async fn ready(
         }
         Err(_) => return Err(not("the store does not answer in time")),
     }
-    match state.index().names().count() {
-        0 => Err(not("there is no table to serve")),
-        tables => Ok((NO_STORE, Json(Ready { status: "ready", tables }))),
+    let index = state.index();
+    let tables = index.names().count();
+    // Any payload stands for all: they lie in one place.
+    let Some(manifest) = index.names().find_map(|name| index.table(name).ok()?.latest()) else {
+        return Err(not("there is no table to serve"));
+    };
+    let blobs = &state.stores().blobs;
+    match tokio::time::timeout(PATIENCE, blobs.contains(BlobKind::Payload, &manifest.digest)).await {
+        Ok(Ok(true)) => Ok((NO_STORE, Json(Ready { status: "ready", tables }))),
+        found => {
+            tracing::warn!(?found, digest = manifest.digest, "the store has lost a payload");
+            Err(not("the store does not have the tables' payloads"))
+        }
     }
 }

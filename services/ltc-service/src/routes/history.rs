@@ -26,15 +26,14 @@ pub(crate) async fn charts(
     RawQuery(query): RawQuery,
     request: Preconditions,
 ) -> Result<Response, ApiError> {
-    // A form sends every field, empty ones too, and spaces as plus signs.
-    let query = query.map(|query| query.replace('+', "%20"));
+    // A form sends every field, empty ones too.
     let mut params = Params::parse(query.as_deref())?;
     let choice = Choice {
         limit: params.count("limit", RUNS, MOST_RUNS)?,
         page: params.count("page", 1, u32::MAX)? as usize,
-        name: params.take("name").unwrap_or_default(),
-        machine: params.take("machine").unwrap_or_default(),
-        measure: params.take("measure").unwrap_or_default(),
+        name: params.words("name").unwrap_or_default(),
+        machine: params.words("machine").unwrap_or_default(),
+        measure: params.words("measure").unwrap_or_default(),
         since: params.take("since").unwrap_or_default(),
         worse: match params.take("worse").as_deref() {
             None | Some("false") => false,

@@ -26,7 +26,7 @@ struct Summary<'a> {
     latest: u32,
     versions: Vec<u32>,
     /// Numbers by alias.
-    aliases: BTreeMap<&'a str, u32>,
+    aliases: BTreeMap<String, u32>,
     /// Of the latest version.
     digest: &'a str,
     lobes: u32,
@@ -45,7 +45,7 @@ pub(crate) async fn list(
         let entry = index.table(name)?;
         let Some(latest) = entry.latest() else { continue };
         let Manifest { version, digest, lobes, brdf, licence, .. } = &**latest;
-        let (versions, aliases) = (entry.numbers(), numbers_by_alias(entry));
+        let (versions, aliases) = (entry.numbers(), numbers_by_alias(name, entry));
         let brdf = &brdf.name;
         tables.push(Summary {
             name,
@@ -66,7 +66,7 @@ pub(crate) async fn list(
 struct Latest<'a> {
     latest: u32,
     versions: Vec<u32>,
-    aliases: BTreeMap<&'a str, u32>,
+    aliases: BTreeMap<String, u32>,
     #[serde(flatten)]
     manifest: &'a Manifest,
 }
@@ -82,7 +82,7 @@ pub(crate) async fn latest(
     let document = Latest {
         latest: latest.version,
         versions: entry.numbers(),
-        aliases: numbers_by_alias(entry),
+        aliases: numbers_by_alias(&name, entry),
         manifest: latest,
     };
     Representation::json(&document, Caching::Short)?.kept().respond(&request)
@@ -137,8 +137,8 @@ pub(crate) fn manifest_json(manifest: &Manifest) -> Result<String, ApiError> {
     Ok(serde_json::to_string_pretty(manifest).map_err(ApiError::internal)? + "\n")
 }
 
-fn numbers_by_alias(entry: &Entry) -> BTreeMap<&str, u32> {
-    entry.aliases().values().map(|alias| (alias.name.as_str(), alias.number)).collect()
+fn numbers_by_alias(table: &str, entry: &Entry) -> BTreeMap<String, u32> {
+    entry.aliases(table).into_iter().map(|alias| (alias.name, alias.number)).collect()
 }
 
 /// A table, and the manifest of its latest version.

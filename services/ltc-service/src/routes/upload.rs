@@ -10,7 +10,7 @@ use ltc_table::digest::digest;
 use serde_json::Value;
 
 use crate::auth::Publisher;
-use crate::request_body::media_type;
+use crate::request_body::{check_length, media_type};
 use crate::routes::tables::manifest_json;
 use crate::selected::TableName;
 use crate::uploaded::{Checked, Uploaded, check};
@@ -29,6 +29,7 @@ impl FromRequest<AppState> for Form {
             return Err(ApiError::WrongMediaType { expected: EXPECTED });
         }
         let limits = state.limits();
+        check_length(request.headers(), limits.upload_bytes)?;
         // As many times the usual time as the usual size.
         let times = (limits.upload_bytes / limits.body_bytes).clamp(1, 64) as u32;
         let parts = tokio::time::timeout(limits.body_time() * times, parts(request, state));

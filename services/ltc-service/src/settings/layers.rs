@@ -76,33 +76,60 @@ impl Layers {
     /// # Errors
     /// [`SettingsError`], naming the place and the setting.
     pub fn resolve(&self) -> Result<Settings, SettingsError> {
-        let invalid = |reason: String| SettingsError::Invalid { name: "settings".to_owned(), reason };
-        let mut all = Table::try_from(Settings::default()).map_err(|e| invalid(e.to_string()))?;
+        let mut all = Table::try_from(Settings::default())
+            .map_err(|e| SettingsError::Invalid { name: "settings".to_owned(), reason: e.to_string() })?;
         if let Some(path) = &self.file {
-            overlay(&mut all, read(path)?, &path.display().to_string(), "")?;
+            let place = path.display().to_string();
+            overlay(&mut all, read(path)?, &place, "")?;
+            understood(&all, &place)?;
         }
         let names = leaves(&all, "");
         for (variable, text) in &self.environment {
             let place = || format!("the environment variable {variable}");
             match names.iter().find(|name| variable_of(name) == *variable) {
-                Some(name) => set(&mut all, name, text, &place())?,
-                None if SECTIONS.iter().any(|section| variable.starts_with(section)) => {
+                Some(name) => {
+                    set(&mut all, name, text, &place())?;
+                    understood(&all, &format!("{}: {name}", place()))?;
+                }
+                None if is_misspelt(variable, &names) => {
                     return Err(SettingsError::Unknown { place: place(), name: variable.clone() });
                 }
                 None => {}
             }
         }
         for (name, text) in &self.flags {
-            set(&mut all, name, text, &format!("the flag for {name}"))?;
+            let place = format!("the flag for {name}");
+            set(&mut all, name, text, &place)?;
+            understood(&all, &place)?;
         }
-        let settings: Settings = Value::Table(all).try_into().map_err(|e: toml::de::Error| {
-            // What can still be wrong is a word of a choice; the message names what there is.
-            invalid(format!("cannot be used: {}", e.message()))
-        })?;
+        let settings = understood(&all, "settings")?;
         settings.validate()?;
         Ok(settings)
     }
 }
+
+/// The settings so far. What can still be wrong when they have the right types is a word of a choice or a negative number; the
+/// message names what there may be.
+fn understood(all: &Table, place: &str) -> Result<Settings, SettingsError> {
+    Value::Table(all.clone()).try_into().map_err(|e: toml::de::Error| SettingsError::Invalid {
+        name: place.to_owned(),
+        reason: format!("cannot be used: {}", e.message()),
+    })
+}
+
+/// Whether a variable that is no setting was meant to be one: it begins as a section of them does, or nearly has the name of one.
+/// Others may be anybody's: Kubernetes makes `LTC_PORT` for a service of the name ltc.
+fn is_misspelt(variable: &str, names: &[String]) -> bool {
+    let near = |name: &String| {
+        let right = variable_of(name);
+        let most = ((right.len() - PREFIX.len()) / 4).clamp(1, 3);
+        strsim::osa_distance(&right, variable) <= most
+    };
+    SECTIONS.iter().any(|section| variable.starts_with(section))
+        || (variable.starts_with(PREFIX) && names.iter().any(near))
+}
+
+const PREFIX: &str = "LTC_";
 
 /// `limits.body_bytes` is `LTC_LIMITS_BODY_BYTES`.
 fn variable_of(name: &str) -> String {
@@ -240,6 +267,22 @@ mod tests {
     }
 
     #[test]
+    fn variables_of_others_are_left_alone() {
+        let others = [
+            "LTC_TOKEN",
+            "LTC_TABLES",
+            "LTC_CONFIG",
+            "LTC_PORT",
+            "LTC_SERVICE_HOST",
+            "LTC_URL",
+            "LTC_DIR",
+            "XTC_READ",
+        ];
+        let environment = others.map(|name| (name, "x"));
+        assert_eq!(resolve(None, &environment, &[]).unwrap(), Settings::default());
+    }
+
+    #[test]
     fn what_is_printed_is_a_file_that_gives_the_same() {
         let all = resolve(None, &[("LTC_READ", "token")], &[("refits.threads", "3")]).unwrap();
         assert_eq!(resolve(Some(&all.to_toml().unwrap()), &[], &[]).unwrap(), all);
@@ -266,7 +309,13 @@ mod tests {
             (None, &[], &[("nothing.at.all", "1")], &["nothing.at.all"]),
             (None, &[], &[("limits", "1")], &["limits must be a section"]),
             (None, &[], &[("listen", "nowhere")], &["listen", "nowhere"]),
-            (None, &[], &[("read", "maybe")], &["maybe"]),
+            (None, &[], &[("read", "maybe")], &["read", "maybe"]),
+            (None, &[("LTC_READ", "maybe")], &[], &["LTC_READ", "maybe", "token"]),
+            (Some("read = \"maybe\""), &[], &[], &["ltc.toml", "maybe"]),
+            (None, &[("LTC_REDA", "token")], &[], &["LTC_REDA"]),
+            (None, &[("LTC_LISTN", "x")], &[], &["LTC_LISTN"]),
+            (None, &[("LTC_LIMIT_BODY_BYTES", "1")], &[], &["LTC_LIMIT_BODY_BYTES"]),
+            (None, &[("LTC_LOGFORMAT", "json")], &[], &["LTC_LOGFORMAT"]),
             (None, &[], &[("limits.body_bytes", "0")], &["limits.body_bytes must be more than 0"]),
             (None, &[], &[("limits.body_bytes", "-5")], &["-5"]),
             (None, &[], &[("drain_seconds", "NaN")], &["drain_seconds"]),

@@ -130,7 +130,7 @@ impl Default for Settings {
 impl Default for Limits {
     fn default() -> Self {
         Self {
-            body_bytes: 1 << 20,
+            body_bytes: 2 << 20,
             upload_bytes: 64 << 20,
             batch_queries: 10_000,
             cache_bytes: 64 << 20,

@@ -1,5 +1,6 @@
 //! Aliases: compare and swap.
 
+use ltc_store::Metadata;
 use serde_json::json;
 
 use crate::support::*;
@@ -53,6 +54,62 @@ async fn an_alias_is_made_once() {
         service.write("PUT", absent, &[("if-match", "*")], &json!({ "version": 2 })).await.status,
         412
     );
+}
+
+#[tokio::test]
+async fn an_alias_moves_for_nobody_who_has_not_seen_it() {
+    let service = Service::new().await;
+    for headers in [&[][..], &[("if-none-match", "\"x\"")], &[("if-none-match", "W/\"x\"")]] {
+        for path in [STABLE, NEW] {
+            let answer = service.write("PUT", path, headers, &json!({ "version": 1 })).await;
+            assert_eq!(answer.status, 428, "{path} {headers:?}");
+        }
+    }
+    assert_eq!(get(&service.app, STABLE).await.json()["version"], 10);
+}
+
+#[tokio::test]
+async fn latest_is_there_before_anybody_sets_it() {
+    let service = Service::new().await;
+    let uploaded = service.store.version(ISO, 1).await.unwrap();
+    for number in [1, 2] {
+        let new = ltc_store::NewVersion {
+            table: "mine".to_owned(),
+            digest: format!("sha256:{number}"),
+            manifest: uploaded.manifest.clone(),
+            state: ltc_store::VersionState::Published,
+            spec_digest: None,
+            reason: None,
+        };
+        service.store.add_version(new, None).await.unwrap();
+    }
+    let path = "/v1/tables/mine/aliases/latest";
+    let named = async |path: &str| get(&service.app, path).await;
+    // What another process changed is read with the next write.
+    let none = service
+        .write("PUT", "/v1/tables/mine/aliases/x", &[("if-match", "*")], &json!({ "version": 1 }))
+        .await;
+    assert_eq!(none.status, 412);
+    let before = named(path).await;
+    assert_eq!(
+        (before.status.as_u16(), &before.json()["version"], &before.json()["revision"]),
+        (200, &json!(2), &json!(0))
+    );
+    let list = named("/v1/tables/mine/aliases").await.json();
+    assert_eq!(list["aliases"], json!([before.json()]));
+    assert_eq!(named("/v1/tables/mine").await.json()["aliases"], json!({ "latest": 2 }));
+    let etag = before.header("etag").to_owned();
+    let moved = service.write("PUT", path, &[("if-match", &etag)], &json!({ "version": 1 })).await;
+    assert_eq!((moved.status.as_u16(), &moved.json()["revision"]), (201, &json!(1)));
+    assert_eq!(
+        service.write("PUT", path, &[("if-match", &etag)], &json!({ "version": 2 })).await.status,
+        412
+    );
+    assert_eq!(
+        service.write("PUT", path, &[("if-none-match", "*")], &json!({ "version": 2 })).await.status,
+        412
+    );
+    assert_eq!(named("/v1/tables/mine").await.json()["latest"], 1);
 }
 
 #[tokio::test]

@@ -99,6 +99,17 @@ async fn reading_can_be_bound_to_tokens() {
     for path in ["/healthz", "/readyz", "/metrics", "/openapi.json", "/docs", "/problems"] {
         assert_eq!(get(&service.app, path).await.status, 200, "{path}");
     }
+    // What writes asks for its own scope and for no other; a lookup that is posted reads.
+    let with = async |path: &str, token: &str, body: &'static str| {
+        send(&service.app, "POST", path, &[JSON, ("authorization", token)], body).await.status.as_u16()
+    };
+    let poster = token(&service.store, &[Scope::Benchmark]).await;
+    let run = "{\"name\": \"a\", \"run\": {}}";
+    assert_eq!(with("/v1/benchmarks", &poster, run).await, 201);
+    assert_eq!(with("/v1/benchmarks", &reader, run).await, 403);
+    assert_eq!(with("/v1/refits", &poster, "{}").await, 403);
+    assert_eq!(with(&at(ISO, "1", "/lookup"), &poster, "[]").await, 403);
+    assert_eq!(with(&at(ISO, "1", "/lookup"), &reader, "[]").await, 200);
     let ids: Vec<String> = service.store.tokens().await.unwrap().into_iter().map(|t| t.id).collect();
     for id in ids {
         service.store.revoke_token(&id).await.unwrap();

@@ -2,6 +2,7 @@
 
 use axum::http::StatusCode;
 use ltc_service::Settings;
+use ltc_store::{BlobKind, Blobs};
 use ltc_table::{Catalogue, Manifest};
 use serde_json::json;
 
@@ -104,6 +105,14 @@ async fn alive_always_and_ready_with_a_table() {
     assert_eq!(not_ready.status, StatusCode::SERVICE_UNAVAILABLE);
     assert_eq!(not_ready.json()["type"], "urn:ltc:problem:not-ready");
     assert_eq!(get(&empty, "/v1/tables").await.json(), json!({"tables": []}));
+    // Without payloads there is nothing to serve, whatever the metadata says.
+    let lost = Service::new().await;
+    for (key, _) in lost.store.list(BlobKind::Payload).await.unwrap() {
+        lost.store.delete(BlobKind::Payload, &key).await.unwrap();
+    }
+    let not_ready = get(&lost.app, "/readyz").await;
+    assert_eq!(not_ready.status, StatusCode::SERVICE_UNAVAILABLE);
+    assert!(not_ready.json()["detail"].as_str().unwrap().contains("payloads"), "{:?}", not_ready.json());
 }
 
 #[tokio::test]

@@ -204,10 +204,11 @@ async fn bodies_have_a_type_a_size_and_a_number_of_queries() {
 async fn the_default_limits_hold() {
     let app = service().await;
     let path = at(ANISO, "1", "/lookup");
-    let mebibyte = format!("[{}]", " ".repeat((1 << 20) - 2));
-    assert_eq!(post(&app, &path, mebibyte.clone()).await.status, StatusCode::OK);
-    assert_eq!(post(&app, &path, mebibyte + " ").await.status, StatusCode::PAYLOAD_TOO_LARGE);
-    let item = r#"{"theta":0.7,"phi":0.3,"alpha_x":0.4,"alpha_y":0.1}"#;
+    let most = format!("[{}]", " ".repeat((2 << 20) - 2));
+    assert_eq!(post(&app, &path, most.clone()).await.status, StatusCode::OK);
+    assert_eq!(post(&app, &path, most + " ").await.status, StatusCode::PAYLOAD_TOO_LARGE);
+    // As long as such an item is with every digit: as many as may be asked fit into a body.
+    let item = r#"{"theta": 0.7000000000000001, "phi": -3.1415926535897931, "alpha_x": 0.12345678901234567, "alpha_y": 0.10000000000000001}"#;
     let batch = |n: usize| format!("[{}]", vec![item; n].join(","));
     let answers: Vec<Value> = serde_json::from_slice(&post(&app, &path, batch(10_000)).await.body).unwrap();
     assert_eq!(answers.len(), 10_000);
@@ -242,6 +243,14 @@ async fn numbers_in_give_numbers_out() {
     let found: Vec<f32> = answer.body.chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
     let exact = table.lookup(&Query { theta: 0.5, phi: 0.25, alpha_x: 0.5, alpha_y: 0.125 }).unwrap();
     assert_eq!((found.len(), found[0], found[3]), (12, exact.magnitude as f32, exact.lobes[0].m[0] as f32));
+    // The f32 nearest to a right angle is more than one; what is farther off is no view.
+    let right_angle = core::f32::consts::FRAC_PI_2;
+    for (theta, status) in [(right_angle, 200), (right_angle.next_up(), 422)] {
+        let body: Vec<u8> = [theta, 0.25, 0.5, 0.125].iter().flat_map(|v| v.to_le_bytes()).collect();
+        let answer =
+            send(&app, "POST", &path, &[("content-type", "application/vnd.ltc.queries.f32")], body).await;
+        assert_eq!(answer.status.as_u16(), status, "{theta}");
+    }
 }
 
 #[tokio::test]

@@ -71,6 +71,26 @@ fn parts(answer: &[u8]) -> (String, &[u8]) {
 }
 
 #[tokio::test]
+async fn a_body_that_would_be_too_large_is_not_waited_for() {
+    let server = Server::start(Settings::default()).await;
+    for path in [at(ANISO, "1", "/lookup"), "/v1/benchmarks".to_owned(), "/v1/tables/x/versions".to_owned()] {
+        for expect in ["", "expect: 100-continue\r\n"] {
+            let form = if path.ends_with("versions") {
+                "multipart/form-data; boundary=x"
+            } else {
+                "application/json"
+            };
+            let headers = format!("content-length: 10000000000\r\ncontent-type: {form}\r\n{expect}");
+            let answer = server.exchange(&request("POST", &path, &headers)).await;
+            let (head, _) = parts(&answer);
+            // Who may not write is told that before anything else.
+            let status = if path.ends_with("lookup") { "413" } else { "401" };
+            assert!(head.starts_with(&format!("http/1.1 {status}")), "{path} {expect}: {head}");
+        }
+    }
+}
+
+#[tokio::test]
 async fn the_wire_has_what_the_router_said() {
     let server = Server::start(Settings::default()).await;
     let path = at(ISO, "1", "/data");
@@ -140,9 +160,9 @@ async fn a_connection_is_used_again_after_errors() {
 #[tokio::test]
 async fn a_large_body_is_refused_over_the_wire() {
     let server = Server::start(Settings::default()).await;
-    let headers = "content-type: application/json\r\ncontent-length: 1100000\r\n";
+    let headers = "content-type: application/json\r\ncontent-length: 2200000\r\n";
     let mut sent = request("POST", &at(ANISO, "1", "/lookup"), headers);
-    sent.extend(std::iter::repeat_n(b' ', 1_100_000));
+    sent.extend(std::iter::repeat_n(b' ', 2_200_000));
     let answer = server.exchange(&sent).await;
     let (head, body) = parts(&answer);
     assert!(head.starts_with("http/1.1 413"), "{head}");

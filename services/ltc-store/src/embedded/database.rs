@@ -21,6 +21,8 @@ const READERS: usize = 4;
 #[derive(Clone)]
 pub(super) struct Database {
     path: PathBuf,
+    /// Which file had that path when it was opened.
+    file: FileId,
     /// Or why there is none.
     writer: Result<Pool, String>,
     readers: Pool,
@@ -42,7 +44,8 @@ impl Database {
         }
         schema::migrate(&mut writer)?;
         let readers = (0..READERS).map(|_| connect(path, read_only())).collect::<Result<_, _>>()?;
-        Ok(Self { path: path.to_owned(), writer: Ok(Pool::new(vec![writer])), readers: Pool::new(readers) })
+        let writer = Ok(Pool::new(vec![writer]));
+        Ok(Self { path: path.to_owned(), file: id_of(path)?, writer, readers: Pool::new(readers) })
     }
 
     /// Opens one that cannot be written to, for this reason.
@@ -56,12 +59,18 @@ impl Database {
                 });
             }
         }
-        Ok(Self { path: path.to_owned(), writer: Err(reason.to_owned()), readers: Pool::new(readers) })
+        let writer = Err(reason.to_owned());
+        Ok(Self { path: path.to_owned(), file: id_of(path)?, writer, readers: Pool::new(readers) })
     }
 
     /// The file.
     pub(super) fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Whether the file that was opened is still there under its name.
+    pub(super) fn is_in_place(&self) -> bool {
+        file_id(&self.path).is_some_and(|now| now == self.file)
     }
 
     /// Whether it can be written.
@@ -106,6 +115,26 @@ impl Database {
             |reason| StoreError::Unwritable { reason: format!("it was opened for reading only: {reason}") };
         self.writer.as_ref().map_err(why)
     }
+}
+
+fn id_of(path: &Path) -> Result<FileId, StoreError> {
+    file_id(path).ok_or_else(|| StoreError::Backend(format!("{} is gone", path.display())))
+}
+
+/// What tells one file of a system from all others, whatever its name.
+#[cfg(unix)]
+type FileId = (u64, u64);
+/// Other systems do not let an open file be deleted or moved.
+#[cfg(not(unix))]
+type FileId = ();
+
+/// `None`: there is no file.
+fn file_id(path: &Path) -> Option<FileId> {
+    let found = std::fs::metadata(path).ok()?;
+    #[cfg(unix)]
+    return Some((std::os::unix::fs::MetadataExt::dev(&found), std::os::unix::fs::MetadataExt::ino(&found)));
+    #[cfg(not(unix))]
+    return found.is_file().then_some(());
 }
 
 /// Idle connections and as many permits.

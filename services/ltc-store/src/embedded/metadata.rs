@@ -161,6 +161,12 @@ impl Metadata for EmbeddedStore {
     }
 
     async fn ping(&self) -> Result<(), StoreError> {
+        // SQLite goes on with a file that was deleted; nobody would find again what it writes there.
+        if !self.database.is_in_place() {
+            return Err(StoreError::Backend(
+                "the database's file is gone, or another one is in its place".to_owned(),
+            ));
+        }
         self.database
             .read(|db| db.query_row("SELECT count(*) FROM tokens", [], |_| Ok(())).map_err(failed))
             .await
