@@ -1,6 +1,8 @@
 //! From a fitted table to a version with an alias.
 
-use ltc_store::{Alias, BlobKind, Claim, NewVersion, Outcome, StoreError, StoredVersion, VersionState};
+use ltc_store::{
+    Alias, BlobKind, Claim, LATEST, NewVersion, Outcome, StoreError, StoredVersion, VersionState,
+};
 use ltc_table::TableVersion;
 use serde_json::Value;
 
@@ -16,9 +18,7 @@ impl Shared {
         let manifest = fitted.manifest();
         let json = serde_json::to_value(manifest).map_err(|e| StoreError::Backend(e.to_string()))?;
         self.blobs.put(BlobKind::Payload, &manifest.digest, fitted.payload()).await?;
-        if let Some(reason) = self.hold_latest(claim, &manifest.name, &json).await? {
-            tracing::info!(table = manifest.name, reason, "latest stays");
-        }
+        self.hold_latest(claim, &manifest.name, &json).await?;
         let new = NewVersion {
             table: manifest.name.clone(),
             digest: manifest.digest.clone(),
@@ -31,31 +31,24 @@ impl Shared {
     }
 
     /// Where nobody has set `latest` it is the newest version: a worse one would take it by being there. It is then set to the version
-    /// that it is, before the new one is kept; says why.
-    async fn hold_latest(
-        &self,
-        claim: &Claim,
-        table: &str,
-        manifest: &Value,
-    ) -> Result<Option<String>, StoreError> {
-        if matches!(&claim.job.request.alias, Some((name, true)) if name == LATEST) {
-            return Ok(None);
-        }
-        let aliases = self.metadata.aliases().await?;
-        if aliases.iter().any(|alias| alias.table == table && alias.name == LATEST) {
-            return Ok(None);
+    /// that it is, before the new one is kept.
+    async fn hold_latest(&self, claim: &Claim, table: &str, manifest: &Value) -> Result<(), StoreError> {
+        let forced = matches!(&claim.job.request.alias, Some((name, true)) if name == LATEST);
+        let is_set = |alias: &Alias| alias.table == table && alias.name == LATEST;
+        if forced || self.metadata.aliases().await?.iter().any(is_set) {
+            return Ok(());
         }
         let versions = self.metadata.versions().await?;
         let newest = versions.into_iter().filter(|v| v.table == table && v.state == VersionState::Published);
-        let Some(newest) = newest.max_by_key(|v| v.number) else { return Ok(None) };
-        let Some(why) = worse(&newest.manifest, manifest) else { return Ok(None) };
+        let Some(newest) = newest.max_by_key(|v| v.number) else { return Ok(()) };
+        let Some(why) = worse(&newest.manifest, manifest) else { return Ok(()) };
         match self.metadata.move_alias(table, LATEST, newest.number, Some(0)).await {
+            Ok(_) => tracing::info!(table, version = newest.number, why, "latest stays"),
             // Somebody has set it meanwhile.
-            Ok(_) | Err(StoreError::Conflict { .. }) => {
-                Ok(Some(format!("at version {}: {why}", newest.number)))
-            }
-            Err(error) => Err(error),
+            Err(StoreError::Conflict { .. }) => {}
+            Err(error) => return Err(error),
         }
+        Ok(())
     }
 
     /// Moves the alias that the job is to move, where the version deserves it.
@@ -96,9 +89,6 @@ impl Shared {
         Ok(why.map(|why| format!("stays at version {}: {why}", there.number)))
     }
 }
-
-/// The alias that every table has: its newest version, unless it was set.
-const LATEST: &str = "latest";
 
 /// Why a version is worse than another one, if it is.
 fn worse(old: &Value, new: &Value) -> Option<String> {

@@ -108,7 +108,7 @@ impl Gate {
     async fn admit(&self, mut request: Request, peer: Option<IpAddr>) -> (Response, RouteLabel) {
         let refused = |error: ApiError| (error.into_response(), RouteLabel(0));
         let path = request.uri().path();
-        let reads = Method::is_safe(request.method()) || path.ends_with("/lookup");
+        let reads = request.method().is_safe() || path.ends_with("/lookup");
         let caller = match self.identify(request.headers(), path, reads, peer).await {
             Ok(caller) => caller,
             Err(error) => return refused(error),
@@ -200,8 +200,7 @@ impl Gate {
 /// the query, which may one day hold what a log must not; no header ever.
 fn log(line: &Line, id: &RequestId, status: u16, microseconds: u64) {
     let (request_id, method, path) = (id.as_str(), line.method.as_str(), line.path.as_str());
-    let reads = matches!(line.method, Method::GET | Method::HEAD | Method::OPTIONS);
-    if reads && status < 400 {
+    if line.method.is_safe() && status < 400 {
         tracing::debug!(request_id, method, path, status, microseconds, "request");
     } else {
         tracing::info!(request_id, method, path, status, microseconds, "request");

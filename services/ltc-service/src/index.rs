@@ -1,9 +1,9 @@
 //! What there is, in memory: reads ask here and never wait for the store's metadata.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use ltc_store::{Alias, StoreError, StoredVersion, VersionState};
+use ltc_store::{Alias, LATEST, StoreError, StoredVersion, VersionState};
 use ltc_table::{Manifest, TableError};
 
 use crate::{ApiError, Stores};
@@ -29,9 +29,6 @@ pub(crate) struct Found {
     /// Whether it was named by what cannot change: digest or number, not an alias.
     pub pinned: bool,
 }
-
-/// The alias that every table has: its newest version, unless it was moved.
-pub(crate) const LATEST: &str = "latest";
 
 /// How many names an error lists at most.
 const LISTED: usize = 20;
@@ -132,26 +129,28 @@ impl Entry {
 
     /// All aliases in alphabetical order, `latest` among them, whether or not somebody has set it.
     pub(crate) fn aliases(&self, table: &str) -> Vec<Alias> {
-        let mut names: Vec<&str> = self.aliases.keys().map(String::as_str).collect();
-        if let Err(place) = names.binary_search(&LATEST) {
-            names.insert(place, LATEST);
-        }
+        let names: BTreeSet<&str> = self.aliases.keys().map(String::as_str).chain([LATEST]).collect();
         names.into_iter().filter_map(|name| self.alias(table, name)).collect()
     }
 
     /// An alias; `latest` that nobody has set has the revision 0.
     pub(crate) fn alias(&self, table: &str, name: &str) -> Option<Alias> {
-        if let Some(alias) = self.aliases.get(name) {
-            return Some(alias.clone());
-        }
-        let number = *self.versions.keys().next_back().filter(|_| name == LATEST)?;
-        Some(Alias { table: table.to_owned(), name: name.to_owned(), number, revision: 0 })
+        let unset = || {
+            let number = self.number(name)?;
+            Some(Alias { table: table.to_owned(), name: name.to_owned(), number, revision: 0 })
+        };
+        self.aliases.get(name).cloned().or_else(unset)
     }
 
     fn aliased(&self, alias: &str) -> Option<&Arc<Manifest>> {
+        self.versions.get(&self.number(alias)?)
+    }
+
+    /// Which version an alias points at.
+    fn number(&self, alias: &str) -> Option<u32> {
         match self.aliases.get(alias) {
-            Some(alias) => self.versions.get(&alias.number),
-            None if alias == LATEST => self.versions.values().next_back(),
+            Some(alias) => Some(alias.number),
+            None if alias == LATEST => self.versions.keys().next_back().copied(),
             None => None,
         }
     }

@@ -1,6 +1,6 @@
 //! A request's body, within limits of size and time.
 
-use axum::body::Bytes;
+use axum::body::{Bytes, HttpBody};
 use axum::extract::{FromRequest, Request};
 use axum::http::{HeaderMap, header};
 use serde::de::DeserializeOwned;
@@ -22,14 +22,9 @@ pub(crate) fn may_be_json(media_type: Option<&str>) -> bool {
 }
 
 /// Refuses a body that says it is too large before any of it is read, and before a client that asks first is told to send it.
-pub(crate) fn check_length(headers: &HeaderMap, limit: usize) -> Result<(), ApiError> {
-    let stated =
-        headers.get(header::CONTENT_LENGTH).and_then(|length| length.to_str().ok()?.parse::<u64>().ok());
-    if stated.is_some_and(|length| length > limit as u64) {
-        Err(ApiError::BodyTooLarge { limit })
-    } else {
-        Ok(())
-    }
+pub(crate) fn check_length(request: &Request, limit: usize) -> Result<(), ApiError> {
+    let least = request.body().size_hint().lower();
+    if least > limit as u64 { Err(ApiError::BodyTooLarge { limit }) } else { Ok(()) }
 }
 
 /// A body and what it calls itself.
@@ -44,7 +39,7 @@ impl FromRequest<AppState> for Body {
     async fn from_request(request: Request, state: &AppState) -> Result<Self, ApiError> {
         let media_type = media_type(request.headers());
         let limits = state.limits();
-        check_length(request.headers(), limits.body_bytes)?;
+        check_length(&request, limits.body_bytes)?;
         let body = tokio::time::timeout(limits.body_time(), Bytes::from_request(request, state));
         let body = body.await.map_err(|_| ApiError::BodyTimeout)?;
         let bytes = body.map_err(|rejection| ApiError::body(&rejection, limits.body_bytes))?;

@@ -30,4 +30,4 @@ pub use metadata::{
     VersionState,
 };
 pub use secret::Secret;
-pub use seed::{SEEDED_ALIASES, seed};
+pub use seed::{LATEST, SEEDED_ALIASES, seed};

@@ -4,8 +4,11 @@ use ltc_table::{Catalogue, Manifest, TableError};
 
 use crate::{BlobKind, Blobs, Metadata, NewVersion, StoreError, VersionState};
 
+/// The alias that every table has: its newest published version, unless it was set.
+pub const LATEST: &str = "latest";
+
 /// Aliases that every table has from the start.
-pub const SEEDED_ALIASES: [&str; 2] = ["latest", "stable"];
+pub const SEEDED_ALIASES: [&str; 2] = [LATEST, "stable"];
 
 /// Puts every version of a catalogue into a store: payload first, then the version, and with it the aliases `latest` and
 /// `stable`, which follow to newer shipped versions for as long as nobody moves them by other means. What is there already

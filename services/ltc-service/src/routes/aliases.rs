@@ -8,7 +8,7 @@ use ltc_table::Manifest;
 use serde::{Deserialize, Serialize};
 
 use crate::auth::Publisher;
-use crate::etag::{ETag, TagList};
+use crate::etag::TagList;
 use crate::index::Index;
 use crate::preconditions::Preconditions;
 use crate::representation::{Caching, Representation, Tagged};
@@ -172,10 +172,9 @@ pub(crate) async fn moved(
 /// The revision that the request says the alias has: 0 where it says that there is none.
 fn expected_revision(headers: &HeaderMap, current: Option<&(Alias, Tagged)>) -> Result<u64, ApiError> {
     let failed = |reason: &str| ApiError::PreconditionFailed { reason: reason.to_owned() };
-    let matches = |list: &TagList, etag: &ETag| list.matches_strongly(etag);
     if let Some(tags) = TagList::of(headers, &header::IF_MATCH) {
         let (alias, content) = current.ok_or_else(|| failed("there is no such alias yet"))?;
-        if !matches(&tags, &content.etag) {
+        if !tags.matches_strongly(&content.etag) {
             return Err(failed("the alias has moved since: its ETag is not one that If-Match names"));
         }
         return Ok(alias.revision);

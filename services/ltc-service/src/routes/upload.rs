@@ -29,7 +29,7 @@ impl FromRequest<AppState> for Form {
             return Err(ApiError::WrongMediaType { expected: EXPECTED });
         }
         let limits = state.limits();
-        check_length(request.headers(), limits.upload_bytes)?;
+        check_length(&request, limits.upload_bytes)?;
         // As many times the usual time as the usual size.
         let times = (limits.upload_bytes / limits.body_bytes).clamp(1, 64) as u32;
         let parts = tokio::time::timeout(limits.body_time() * times, parts(request, state));

@@ -45,7 +45,7 @@ impl Database {
         schema::migrate(&mut writer)?;
         let readers = (0..READERS).map(|_| connect(path, read_only())).collect::<Result<_, _>>()?;
         let writer = Ok(Pool::new(vec![writer]));
-        Ok(Self { path: path.to_owned(), file: id_of(path)?, writer, readers: Pool::new(readers) })
+        Ok(Self { path: path.to_owned(), file: file_id(path)?, writer, readers: Pool::new(readers) })
     }
 
     /// Opens one that cannot be written to, for this reason.
@@ -60,7 +60,7 @@ impl Database {
             }
         }
         let writer = Err(reason.to_owned());
-        Ok(Self { path: path.to_owned(), file: id_of(path)?, writer, readers: Pool::new(readers) })
+        Ok(Self { path: path.to_owned(), file: file_id(path)?, writer, readers: Pool::new(readers) })
     }
 
     /// The file.
@@ -70,7 +70,7 @@ impl Database {
 
     /// Whether the file that was opened is still there under its name.
     pub(super) fn is_in_place(&self) -> bool {
-        file_id(&self.path).is_some_and(|now| now == self.file)
+        file_id(&self.path).is_ok_and(|now| now == self.file)
     }
 
     /// Whether it can be written.
@@ -117,10 +117,6 @@ impl Database {
     }
 }
 
-fn id_of(path: &Path) -> Result<FileId, StoreError> {
-    file_id(path).ok_or_else(|| StoreError::Backend(format!("{} is gone", path.display())))
-}
-
 /// What tells one file of a system from all others, whatever its name.
 #[cfg(unix)]
 type FileId = (u64, u64);
@@ -128,13 +124,13 @@ type FileId = (u64, u64);
 #[cfg(not(unix))]
 type FileId = ();
 
-/// `None`: there is no file.
-fn file_id(path: &Path) -> Option<FileId> {
-    let found = std::fs::metadata(path).ok()?;
+fn file_id(path: &Path) -> Result<FileId, StoreError> {
+    let found = std::fs::metadata(path)
+        .map_err(|error| StoreError::Backend(format!("{}: {error}", path.display())))?;
     #[cfg(unix)]
-    return Some((std::os::unix::fs::MetadataExt::dev(&found), std::os::unix::fs::MetadataExt::ino(&found)));
+    return Ok((std::os::unix::fs::MetadataExt::dev(&found), std::os::unix::fs::MetadataExt::ino(&found)));
     #[cfg(not(unix))]
-    return found.is_file().then_some(());
+    return Ok(drop(found));
 }
 
 /// Idle connections and as many permits.

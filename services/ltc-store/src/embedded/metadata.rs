@@ -161,14 +161,16 @@ impl Metadata for EmbeddedStore {
     }
 
     async fn ping(&self) -> Result<(), StoreError> {
-        // SQLite goes on with a file that was deleted; nobody would find again what it writes there.
-        if !self.database.is_in_place() {
-            return Err(StoreError::Backend(
-                "the database's file is gone, or another one is in its place".to_owned(),
-            ));
-        }
+        let database = self.database.clone();
         self.database
-            .read(|db| db.query_row("SELECT count(*) FROM tokens", [], |_| Ok(())).map_err(failed))
+            .read(move |db| {
+                // SQLite goes on with a file that was deleted; nobody would find again what it writes there.
+                if !database.is_in_place() {
+                    let reason = "the database's file is gone, or another one is in its place";
+                    return Err(StoreError::Backend(reason.to_owned()));
+                }
+                db.query_row("SELECT count(*) FROM tokens", [], |_| Ok(())).map_err(failed)
+            })
             .await
     }
 }
